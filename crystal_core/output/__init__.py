@@ -1,1 +1,1 @@
-"""."""
+"""What leaves the renderer: pictures as bytes, files written whole."""
