@@ -1,0 +1,52 @@
+"""The bricks of the schema: what every record and every number of the mineral data has."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+__all__ = ["Entry", "Key", "Known", "Number", "Positive", "Status", "Text"]
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+"""A finite number. Strict: "1.5" in quotes and `yes` are not numbers."""
+
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]
+"""A finite number above zero."""
+
+Text = Annotated[str, Field(strict=True, min_length=1, max_length=2000)]
+"""Some text."""
+
+Key = Annotated[str, Field(strict=True, pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$", max_length=64)]
+"""A name for programs: lower-case words joined by hyphens."""
+
+Status = Literal["published", "measured", "fitted", "derived", "estimated", "recalled"]
+"""How well a number is known.
+
+published
+    read in the source named (of a published range: a value inside it)
+measured
+    measured by the authors of this database
+fitted
+    parameters of a fit to data of the source named
+derived
+    computed from the inputs named in the note
+estimated
+    chosen by the authors of this database to look right
+recalled
+    a standard value of textbooks, not checked against a page
+"""
+
+
+class Entry(BaseModel):
+    """A record of the mineral data: frozen, no unknown fields."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
+
+
+class Known(Entry):
+    """A record that says where its numbers come from and how well they are known."""
+
+    source: Key = Field(description="Key of the source")
+    status: Status = Field(description="How well the numbers are known")
+    note: Text | None = Field(None, description="What a user of the numbers should know")
