@@ -1,0 +1,274 @@
+"""Scattering of plane waves at the plane face between two media, by continuity of tangential E and H.
+
+Let ψ = (E_t, H_t) be the tangential field of a wave and g(ψ, φ) = (E_ψ × H_φ + E_φ × H_ψ)_z. Two different waves of one
+medium with the same tangential k have g = 0 (`modes.bilinear`). Projecting the continuity condition
+
+    ψ_in + Σ r_i ψ₁⁻_i = Σ t_j ψ₂⁺_j
+
+on the two waves ψ₁⁺_i that travel towards the face removes the reflected waves, and leaves one 2×2 system for the
+transmitted amplitudes; projecting on ψ₁⁻_i then gives the reflected ones, one division each:
+
+    Σ_j g(ψ₁⁺_i, ψ₂⁺_j) t_j = g(ψ₁⁺_i, ψ_in),        r_i = Σ_j t_j g(ψ₁⁻_i, ψ₂⁺_j) / g(ψ₁⁻_i, ψ₁⁻_i).
+
+The same few products serve every pair of media, and no wave need propagate. Where a reflected wave is exactly
+grazing g(ψ₁⁻_i, ψ₁⁻_i) vanishes; such rays are solved by the plain 4×4 continuity system of waves with \\|E\\| = 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crystal_core.errors import InputError
+from crystal_core.optics.arrays import BoolArray, Field, Real, dot
+from crystal_core.optics.frames import InterfaceFrame, interface_frame
+from crystal_core.optics.medium import UNIT_TOLERANCE, Medium
+from crystal_core.optics.modes import Mode, Wave, bilinear, mode_pair, propagating
+
+__all__ = ["Face", "Scattering", "scatter", "solve_face", "split_by_propagation"]
+
+GRAZING = 1e-9
+"""|g(ψ, ψ)|/|ψ|² below which a reflected wave counts as grazing: the division would cost half the digits."""
+
+NORMAL_PART = 1e-9
+"""Largest normal component of a tangential wave vector that is taken for rounding."""
+
+Amplitudes = list[list[Field]]
+"""[i][j]: outgoing mode i from incident mode j."""
+
+
+@dataclass(slots=True)
+class Face:
+    """The six waves at a face, in its frame, and the amplitudes between them, found on demand.
+
+    Every array has one entry per ray; where `evanescent` is False all of them are real.
+    """
+
+    frame: InterfaceFrame
+    incident: tuple[Mode, Mode]
+    reflected: tuple[Mode, Mode]
+    transmitted: tuple[Mode, Mode]
+    _gram: Amplitudes = field(default_factory=list)
+    _transmission: dict[int, tuple[Field, Field]] = field(default_factory=dict)
+
+    def transmission(self, j: int) -> tuple[Field, Field]:
+        """Return the amplitudes of the two transmitted modes for incident mode `j`, shape (N,) each."""
+        if j not in self._transmission:
+            if not self._gram:
+                self._gram = [[bilinear(i, t) for t in self.transmitted] for i in self.incident]
+            g = self._gram
+            scale = self.incident[j].norm() / (g[0][0] * g[1][1] - g[0][1] * g[1][0])
+            column = (g[1][1] * scale, -g[1][0] * scale) if j == 0 else (-g[0][1] * scale, g[0][0] * scale)
+            self._transmission[j] = column
+        return self._transmission[j]
+
+    def reflection(self, i: int, j: int) -> Field:
+        """Return the amplitude of reflected mode `i` for incident mode `j`, shape (N,)."""
+        t = self.transmission(j)
+        wave = self.reflected[i]
+        projected = t[0] * bilinear(wave, self.transmitted[0]) + t[1] * bilinear(wave, self.transmitted[1])
+        return projected / wave.norm()
+
+
+def solve_face(frame: InterfaceFrame, source: Medium, target: Medium, evanescent: bool) -> Face:
+    """Return the waves at each ray's face; amplitudes follow on demand.
+
+    Parameters
+    ----------
+    frame : InterfaceFrame
+        Plane of incidence; its z points from `source` into `target`.
+    source, target : Medium
+        The media on both sides.
+    evanescent : bool
+        Whether any wave of the batch may be evanescent; see `split_by_propagation`.
+    """
+    return Face(
+        frame,
+        mode_pair(source, frame, +1, evanescent),
+        mode_pair(source, frame, -1, evanescent),
+        mode_pair(target, frame, +1, evanescent),
+    )
+
+
+def split_by_propagation(frame: InterfaceFrame, source: Medium, target: Medium) -> BoolArray:
+    """Return which rays have only propagating waves on both sides, shape (N,): those need no complex numbers."""
+    a, b = propagating(source, frame)
+    c, d = propagating(target, frame)
+    return a & b & c & d
+
+
+@dataclass(frozen=True, slots=True)
+class Scattering:
+    """What a face does to the two waves that come in from one side.
+
+    Parameters
+    ----------
+    incident, reflected, transmitted : pair of Wave
+        Modes of isotropic media: s, p; of uniaxial ones: ordinary, extraordinary. Incident waves that are evanescent
+        cannot come in: their columns of amplitudes and powers are NaN.
+    amplitude_reflected, amplitude_transmitted : nested list of Field
+        [i][j]: amplitude of outgoing mode i for incident mode j of unit field, shape (N,).
+    power_reflected, power_transmitted : nested list of Real
+        [i][j]: fraction of the incident normal flux, shape (N,); 0 for an evanescent outgoing wave.
+    """
+
+    incident: tuple[Wave, Wave]
+    reflected: tuple[Wave, Wave]
+    transmitted: tuple[Wave, Wave]
+    amplitude_reflected: Amplitudes
+    amplitude_transmitted: Amplitudes
+    power_reflected: list[list[Real]]
+    power_transmitted: list[list[Real]]
+
+
+def scatter(normal: ArrayLike, tangential_k: ArrayLike, source: Medium, target: Medium) -> Scattering:
+    """Return the waves, amplitudes and powers at the plane face between two media.
+
+    Parameters
+    ----------
+    normal : array_like
+        Unit normal from `source` into `target`, shape (3,) or (3, N).
+    tangential_k : array_like
+        Part of the incident wave vector in the face, in units of 2π/λ, shape (3, N).
+    source, target : Medium
+        The media; their indices at each ray's wavelength.
+
+    Raises
+    ------
+    InputError
+        A normal that is not a unit vector, a tangential_k that is not finite or not tangential.
+
+    Notes
+    -----
+    At exactly grazing incidence the incident wave carries no flux through the face; the powers given are the limit:
+    it is reflected whole.
+    """
+    z, kt = _checked(normal, tangential_k)
+    frame = interface_frame(z, kt)
+    real = split_by_propagation(frame, source, target)
+    face = solve_face(frame, source, target, evanescent=not bool(real.all()))
+    incoming, outgoing = propagating(source, frame), propagating(target, frame)
+
+    names = {True: ("s", "p"), False: ("ordinary", "extraordinary")}
+    sides = (
+        (face.incident, names[source.is_isotropic], incoming),
+        (face.reflected, names[source.is_isotropic], incoming),
+        (face.transmitted, names[target.is_isotropic], outgoing),
+    )
+    scale: list[list[Real]] = []
+    waves: list[tuple[Wave, Wave]] = []
+    for modes, pair_names, free in sides:
+        lengths = [_field_length(mode) for mode in modes]
+        first, second = (
+            _wave(mode, length, name, frame, ok)
+            for mode, length, name, ok in zip(modes, lengths, pair_names, free, strict=True)
+        )
+        waves.append((first, second))
+        scale.append(lengths)
+
+    t, r = _amplitudes(face, scale)
+    for j in (0, 1):
+        if not incoming[j].all():
+            for amplitude in (t, r):
+                for i in (0, 1):
+                    amplitude[i][j] = np.where(incoming[j], amplitude[i][j], np.nan)
+    return Scattering(
+        waves[0], waves[1], waves[2], r, t, _powers(r, waves[1], waves[0], True), _powers(t, waves[2], waves[0], False)
+    )
+
+
+def _amplitudes(face: Face, scale: list[list[Real]]) -> tuple[Amplitudes, Amplitudes]:
+    """Return transmitted and reflected amplitudes between waves of unit field."""
+    smallest = np.minimum(*(np.abs(w.norm()) / length**2 for w, length in zip(face.reflected, scale[1], strict=True)))
+    grazing = np.flatnonzero(smallest < GRAZING)
+    with np.errstate(divide="ignore", invalid="ignore"):  # grazing rays are solved anew below
+        t = [[face.transmission(j)[i] * scale[2][i] / scale[0][j] for j in (0, 1)] for i in (0, 1)]
+        r = [[face.reflection(i, j) * scale[1][i] / scale[0][j] for j in (0, 1)] for i in (0, 1)]
+    if grazing.size:
+        solved = _solve_4x4(face, scale, grazing)
+        for i in (0, 1):
+            for j in (0, 1):
+                t[i][j] = _replaced(t[i][j], grazing, solved[:, i, j])
+                r[i][j] = _replaced(r[i][j], grazing, solved[:, 2 + i, j])
+    return t, r
+
+
+def _solve_4x4(face: Face, scale: list[list[Real]], rays: np.ndarray) -> Field:
+    """Solve [ψ₂⁺ −ψ₁⁻] a = ψ_in for the few rays where a reflected wave grazes; shape (rays, 4, 2)."""
+
+    def tangential(modes: tuple[Mode, Mode], lengths: list[Real]) -> Field:
+        columns = []
+        for mode, length in zip(modes, lengths, strict=True):
+            parts = [np.zeros(mode.q.shape) if v is None else v for v in (mode.ex, mode.ey, mode.hx, mode.hy)]
+            columns.append(np.stack([(v / length)[rays] for v in parts], axis=-1))
+        return np.stack(columns, axis=-1)
+
+    ahead, back = tangential(face.transmitted, scale[2]), tangential(face.reflected, scale[1])
+    incoming = tangential(face.incident, scale[0])
+    matrix = np.concatenate((ahead, -back), axis=-1)
+    # Where both of a pair's fields fall together (a grazing wave equals its own reflection) the system is singular
+    # and consistent; the least-norm solution splits nothing and keeps continuity.
+    return np.stack([np.linalg.lstsq(m, v, rcond=1e-13)[0] for m, v in zip(matrix, incoming, strict=True)])
+
+
+def _replaced(values: Field, rays: np.ndarray, new: Field) -> Field:
+    result = values.astype(np.result_type(values, new))
+    result[rays] = new
+    return result
+
+
+def _powers(amplitude: Amplitudes, out: tuple[Wave, Wave], inc: tuple[Wave, Wave], reflected: bool) -> list[list[Real]]:
+    powers: list[list[Real]] = []
+    for i in (0, 1):
+        row = []
+        for j in (0, 1):
+            grazing = inc[j].propagating & (inc[j].flux <= GRAZING * inc[j].index)
+            flux = np.where(grazing, 1.0, inc[j].flux)
+            with np.errstate(divide="ignore", invalid="ignore"):  # evanescent incident waves: NaN is the answer
+                power = np.abs(amplitude[i][j]) ** 2 * np.abs(out[i].flux) / flux
+            row.append(np.where(grazing, float(reflected and i == j), power))
+        powers.append(row)
+    return powers
+
+
+def _field_length(mode: Mode) -> Real:
+    total = np.zeros(mode.q.shape)
+    for component in (mode.ex, mode.ey, mode.ez):
+        if component is not None:
+            total = total + np.abs(component) ** 2
+    return np.sqrt(total)
+
+
+def _wave(mode: Mode, length: Real, name: str, frame: InterfaceFrame, free: BoolArray) -> Wave:
+    zero = np.zeros(mode.q.shape)
+    ex, ey, ez = ((zero if v is None else v) / length for v in (mode.ex, mode.ey, mode.ez))
+    k = frame.world(frame.kappa, zero, mode.q.real)
+    ray = frame.world(mode.ray[0].real, zero if mode.ray[1] is None else mode.ray[1].real, mode.ray[2].real)
+    with np.errstate(invalid="ignore", divide="ignore"):  # an evanescent wave has no ray
+        ray = np.where(free, ray / np.sqrt(dot(ray, ray)), np.nan)
+    return Wave(
+        name=name,
+        k=k,
+        k_imag=frame.world(zero, zero, mode.q.imag * np.ones(zero.shape)),
+        field=frame.world(ex, ey, ez).astype(np.complex128),
+        ray=ray,
+        index=np.where(free, np.sqrt(dot(k, k)), np.nan),
+        propagating=free,
+        flux=np.where(free, mode.flux() / length**2, 0.0),
+    )
+
+
+def _checked(normal: ArrayLike, tangential_k: ArrayLike) -> tuple[Real, Real]:
+    kt = np.asarray(tangential_k, np.float64)
+    if kt.ndim != 2 or kt.shape[0] != 3 or not np.all(np.isfinite(kt)):
+        raise InputError.at("/tangential_k", "the tangential wave vector must be finite, shape (3, N)")
+    z = np.asarray(normal, np.float64)
+    if z.shape not in ((3,), kt.shape) or not np.all(np.abs(np.sum(z * z, axis=0) - 1.0) <= 2 * UNIT_TOLERANCE):
+        raise InputError.at("/normal", "the normal must be a unit vector, shape (3,) or (3, N)")
+    z = np.ascontiguousarray(np.broadcast_to(z[:, None] if z.ndim == 1 else z, kt.shape))
+    off = dot(kt, z)
+    if np.any(np.abs(off) > NORMAL_PART):
+        raise InputError.at("/tangential_k", "the tangential wave vector has a component along the normal")
+    return z, kt - off * z
