@@ -1,0 +1,1 @@
+"""Independent truth: slow, plain solvers written apart from the code they judge."""
