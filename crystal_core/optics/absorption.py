@@ -13,8 +13,8 @@ __all__ = ["absorption_along_ray"]
 def absorption_along_ray(medium: Medium, k: Real, extraordinary: bool) -> Real:
     """Return a(E) = k0 E†ε''E / |Re(E × H*)| of a mode, in mm⁻¹ along its ray, shape (N,).
 
-    ε'' = Σ (n_i a_i / k0) u_i u_iᵀ on the frame of the indicatrix, so a wave that vibrates along u_i is absorbed by a_i.
-    First order in ε''; it fails within about 1° of an optic axis only where ε'' couples the two modes, which a
+    ε'' = Σ (n_i a_i / k0) u_i u_iᵀ on the frame of the indicatrix, so a wave that vibrates along u_i is absorbed by
+    a_i. First order in ε''; it fails within about 1° of an optic axis only where ε'' couples the two modes, which a
     uniaxial ε'' on the same axis does not (Born & Wolf, Principles of Optics, 7th ed., §15.6).
 
     Parameters

@@ -53,7 +53,7 @@ class Coherency:
         return np.stack((self.xx + self.yy, self.xx - self.yy, 2 * self.xy_re, -2 * self.xy_im))
 
     def rotated(self, cos: Real, sin: Real) -> Coherency:
-        """Return the matrices in the frame turned by an angle about the propagation, counter-clockwise: x' = cos x + sin y."""
+        """Return the matrices in a frame turned counter-clockwise about the propagation, x' = cos x + sin y."""
         c2, s2, cs = cos * cos, sin * sin, cos * sin
         return Coherency(
             c2 * self.xx + s2 * self.yy + 2 * cs * self.xy_re,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import overload
 
 import numpy as np
 
@@ -36,6 +37,12 @@ class InterfaceFrame:
     def components(self, v: Real) -> tuple[Real, Real, Real]:
         """Return the components of world vectors `v`, shape (3,) or (3, N), along x, y, z."""
         return dot(v, self.x), dot(v, self.y), dot(v, self.z)
+
+    @overload
+    def world(self, vx: Real, vy: Real, vz: Real) -> Real: ...
+
+    @overload
+    def world(self, vx: Field, vy: Field, vz: Field) -> Field: ...
 
     def world(self, vx: Field, vy: Field, vz: Field) -> Field:
         """Return the world vectors, shape (3, N), of components along x, y, z."""

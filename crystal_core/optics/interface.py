@@ -11,7 +11,7 @@ transmitted amplitudes; projecting on ψ₁⁻_i then gives the reflected ones, 
     Σ_j g(ψ₁⁺_i, ψ₂⁺_j) t_j = g(ψ₁⁺_i, ψ_in),        r_i = Σ_j t_j g(ψ₁⁻_i, ψ₂⁺_j) / g(ψ₁⁻_i, ψ₁⁻_i).
 
 The same few products serve every pair of media, and no wave need propagate. Where a reflected wave is exactly
-grazing g(ψ₁⁻_i, ψ₁⁻_i) vanishes; such rays are solved by the plain 4×4 continuity system of waves with \\|E\\| = 1.
+grazing g(ψ₁⁻_i, ψ₁⁻_i) vanishes; such rays are solved by the plain 4×4 continuity system of waves of unit E.
 """
 
 from __future__ import annotations
@@ -244,20 +244,24 @@ def _field_length(mode: Mode) -> Real:
 def _wave(mode: Mode, length: Real, name: str, frame: InterfaceFrame, free: BoolArray) -> Wave:
     zero = np.zeros(mode.q.shape)
     ex, ey, ez = ((zero if v is None else v) / length for v in (mode.ex, mode.ey, mode.ez))
-    k = frame.world(frame.kappa, zero, mode.q.real)
-    ray = frame.world(mode.ray[0].real, zero if mode.ray[1] is None else mode.ray[1].real, mode.ray[2].real)
+    k = frame.world(frame.kappa, zero, _real(mode.q))
+    ray = frame.world(*(zero if component is None else _real(component) for component in mode.ray))
     with np.errstate(invalid="ignore", divide="ignore"):  # an evanescent wave has no ray
         ray = np.where(free, ray / np.sqrt(dot(ray, ray)), np.nan)
     return Wave(
         name=name,
         k=k,
-        k_imag=frame.world(zero, zero, mode.q.imag * np.ones(zero.shape)),
+        k_imag=frame.world(zero, zero, np.imag(mode.q) + zero),
         field=frame.world(ex, ey, ez).astype(np.complex128),
         ray=ray,
         index=np.where(free, np.sqrt(dot(k, k)), np.nan),
         propagating=free,
         flux=np.where(free, mode.flux() / length**2, 0.0),
     )
+
+
+def _real(values: Field) -> Real:
+    return np.asarray(values.real, np.float64)
 
 
 def _checked(normal: ArrayLike, tangential_k: ArrayLike) -> tuple[Real, Real]:

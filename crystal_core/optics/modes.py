@@ -76,11 +76,11 @@ class Wave:
     k, k_imag : Real
         Wave vector in units of 2π/λ, real and imaginary part, shape (3, N).
     field : Complex
-        Electric field with \\|E\\| = 1, shape (3, N).
+        Electric field of unit length, shape (3, N).
     ray : Real
         Unit vector of the energy flow Re E × H*, shape (3, N); NaN where the wave is evanescent.
     index : Real
-        \\|k\\|, shape (N,); NaN where the wave is evanescent.
+        Length of k, shape (N,); NaN where the wave is evanescent.
     propagating : BoolArray
         Whether the wave carries energy along the normal, shape (N,).
     flux : Real
@@ -240,7 +240,8 @@ def _extraordinary_quadratic(medium: Medium, kappa: Real, cx: Real, cz: Real) ->
 
 
 def _squared_length(x: Field, y: Field, z: Field) -> Real:
-    return np.abs(x) ** 2 + np.abs(y) ** 2 + np.abs(z) ** 2
+    total: Real = np.abs(x) ** 2 + np.abs(y) ** 2 + np.abs(z) ** 2
+    return total
 
 
 def _root(square: Real, evanescent: bool) -> Field:
