@@ -1,0 +1,207 @@
+"""A scene description turned into the arrays that the renderer works on; what frames share is staged once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import minerals_db
+from crystal_core.errors import InputError
+from crystal_core.geometry import ConvexPolyhedron, FaceFinder, block, face_finder, rhombohedron
+from crystal_core.geometry.cuts import rotation_about_z
+from crystal_core.geometry.lattice import direct_basis, face_normal
+from crystal_core.materials import principal_indices
+from crystal_core.scene.description import Camera, Page, Scene, Shape
+from crystal_core.scene.printed_page import printed_digits
+from crystal_core.scene.texture import Texture, decode_texture, read_asset
+
+__all__ = ["StagedCamera", "StagedPage", "StagedScene", "StagedSpecimen", "cleavage_pole_deg", "stage"]
+
+Real = NDArray[np.float64]
+
+TRIGONAL_CLEAVAGE = "a rhombohedral cleavage {h0l} of a trigonal crystal"
+
+
+@dataclass(frozen=True)
+class StagedSpecimen:
+    """The crystal in the world at one stage angle.
+
+    Parameters
+    ----------
+    mineral : minerals_db.Mineral
+        Its entry.
+    body : ConvexPolyhedron
+        In the world, mm.
+    finder : FaceFinder
+        First face on a ray from outside.
+    axis : Real
+        Optic axis, shape (3,).
+    """
+
+    mineral: minerals_db.Mineral
+    body: ConvexPolyhedron
+    finder: FaceFinder
+    axis: Real
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether the crystal has one index."""
+        return self.mineral.optical_class == "isotropic"
+
+    def indices(self, wavelength_nm: ArrayLike) -> tuple[Real, ...]:
+        """Return the principal indices at the wavelengths: (n,) or (n_o, n_e)."""
+        return principal_indices(self.mineral, wavelength_nm)
+
+
+@dataclass(frozen=True)
+class StagedPage:
+    """The printed sheet: its texture and the table around it."""
+
+    texture: Texture
+    table_reflectance: float
+
+
+@dataclass(frozen=True)
+class StagedCamera:
+    """Pinhole at `eye` with unit vectors forward, right, up and tan(vfov/2); `analyser` a unit vector or None."""
+
+    eye: Real
+    forward: Real
+    right: Real
+    up: Real
+    tan_half: float
+    analyser: Real | None
+
+
+@dataclass(frozen=True)
+class StagedScene:
+    """Everything one frame needs."""
+
+    specimen: StagedSpecimen
+    page: StagedPage
+    light_mm: Real
+    sky_fraction: float
+    camera: StagedCamera
+    exposure: float
+
+    def turned(self, angle_deg: float) -> StagedScene:
+        """Return the scene with the specimen (body, lattice and indicatrix) turned counter-clockwise about +z."""
+        rotation = rotation_about_z(angle_deg)
+        body = self.specimen.body.transformed(rotation, np.zeros(3))
+        specimen = replace(self.specimen, body=body, finder=face_finder(body), axis=rotation @ self.specimen.axis)
+        return replace(self, specimen=specimen)
+
+
+def stage(scene: Scene, assets: Path | None = None) -> StagedScene:
+    """Return the scene as arrays, the specimen at stage angle 0.
+
+    Parameters
+    ----------
+    scene : Scene
+        The description.
+    assets : Path, optional
+        Folder of uploaded files, named by their sha256.
+
+    Raises
+    ------
+    InputError
+        Unknown mineral or asset, a cut that the mineral does not have, a camera or a light inside the specimen.
+    """
+    specimen = _specimen(scene)
+    camera = _camera(scene.camera)
+    light = np.asarray(scene.light.position_mm)
+    for pointer, name, point in (("/camera/eye_mm", "camera", camera.eye), ("/light/position_mm", "light", light)):
+        if point[2] <= 0:
+            raise InputError.at(pointer, f"the {name} must stand above the page (z > 0)")
+        if np.all(specimen.body.normals @ point <= specimen.body.offsets):
+            raise InputError.at(pointer, f"the {name} stands inside the specimen")
+    return StagedScene(specimen, _page(scene.page, assets), light, scene.sky.fraction, camera, scene.exposure)
+
+
+def cleavage_pole_deg(mineral: minerals_db.Mineral) -> float:
+    """Return the angle between the c axis and the poles of the mineral's rhombohedral cleavage.
+
+    Raises
+    ------
+    InputError
+        The mineral is not trigonal or has no such cleavage.
+    """
+    forms = [c.hkl for c in mineral.cleavage if c.hkl[1] == 0 and c.hkl[0] != 0 and c.hkl[2] != 0]
+    if mineral.system != "trigonal" or not forms:
+        raise InputError.at("/specimen/shape/cut", f"{mineral.id} has no {TRIGONAL_CLEAVAGE}; cut it as a block")
+    cell = mineral.cell
+    basis = direct_basis(
+        (cell.a_angstrom, cell.b_angstrom, cell.c_angstrom), (cell.alpha_deg, cell.beta_deg, cell.gamma_deg)
+    )
+    return float(np.rad2deg(np.arccos(abs(face_normal(basis, forms[0])[2]))))
+
+
+def _specimen(scene: Scene) -> StagedSpecimen:
+    try:
+        mineral = minerals_db.mineral(scene.specimen.mineral)
+    except minerals_db.UnknownMineralError as error:
+        raise InputError.at("/specimen/mineral", str(error)) from error
+    if mineral.optical_class == "biaxial":
+        raise InputError.at("/specimen/mineral", f"{mineral.id} is biaxial: only isotropic and uniaxial crystals yet")
+    body, axis = _body(scene.specimen.shape, mineral)
+    lowest = float(body.vertices[:, 2].min())
+    body = body.transformed(np.eye(3), np.array((0.0, 0.0, scene.specimen.gap_mm - lowest)))
+    return StagedSpecimen(mineral, body, face_finder(body), axis)
+
+
+def _body(shape: Shape, mineral: minerals_db.Mineral) -> tuple[ConvexPolyhedron, Real]:
+    if shape.cut == "cleavage":
+        return rhombohedron(cleavage_pole_deg(mineral), shape.size_mm, shape.axis_azimuth_deg)
+    tilt, azimuth = np.deg2rad((shape.axis_tilt_deg, shape.axis_azimuth_deg))
+    axis = np.array((np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)))
+    return block(shape.size_mm), axis
+
+
+def _page(page: Page, assets: Path | None) -> StagedPage:
+    if page.texture == "digits":
+        texels = printed_digits()
+    else:
+        texels = decode_texture(read_asset(assets, page.texture, "/page/texture"), "/page/texture")
+    texture = Texture(texels, page.width_mm)
+    if page.marks_mm:
+        texture = Texture(_with_marks(texture, page.marks_mm, page.mark_diameter_mm), page.width_mm)
+    return StagedPage(texture, page.table_reflectance)
+
+
+def _with_marks(texture: Texture, marks_mm: tuple[tuple[float, float], ...], diameter_mm: float) -> NDArray[np.float32]:
+    """Return the texels with black discs; a texel on the rim is covered by the part of it that the disc covers."""
+    texels = texture.texels.copy()
+    rows, columns = texels.shape[:2]
+    radius = 0.5 * diameter_mm / texture.texel_mm
+    grid = (np.arange(16) + 0.5) / 16
+    for number, (x, y) in enumerate(marks_mm):
+        column = (x + 0.5 * texture.width_mm) / texture.texel_mm
+        row = (0.5 * texture.height_mm - y) / texture.texel_mm
+        if not (radius < column < columns - radius and radius < row < rows - radius):
+            raise InputError.at(f"/page/marks_mm/{number}", "the mark does not lie on the page")
+        i0, i1 = int(row - radius), int(np.ceil(row + radius))
+        j0, j1 = int(column - radius), int(np.ceil(column + radius))
+        dy = (np.arange(i0, i1)[:, None] + grid - row).reshape(-1, 1)
+        dx = (np.arange(j0, j1)[:, None] + grid - column).reshape(1, -1)
+        inside = (dx * dx + dy * dy <= radius * radius).reshape(i1 - i0, 16, j1 - j0, 16)
+        texels[i0:i1, j0:j1] *= (1.0 - inside.mean(axis=(1, 3)))[:, :, None].astype(np.float32)
+    return texels
+
+
+def _camera(camera: Camera) -> StagedCamera:
+    eye, target, up = (np.asarray(v, np.float64) for v in (camera.eye_mm, camera.target_mm, camera.up))
+    forward = target - eye
+    right = np.cross(forward, up)
+    if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(forward) * np.linalg.norm(up):
+        raise InputError.at("/camera/up", "up must not be parallel to the line of sight, nor eye and target coincide")
+    forward = forward / np.linalg.norm(forward)
+    right = right / np.linalg.norm(right)
+    upright = np.cross(right, forward)
+    analyser = None
+    if camera.analyser_deg is not None:
+        angle = np.deg2rad(camera.analyser_deg)
+        analyser = np.cos(angle) * right + np.sin(angle) * upright
+    return StagedCamera(eye, forward, right, upright, float(np.tan(0.5 * np.deg2rad(camera.vfov_deg))), analyser)
