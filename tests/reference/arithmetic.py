@@ -81,7 +81,10 @@ class Many:
 
     @staticmethod
     def eigenvalues(matrix: Array) -> list[Any]:
-        return list(mpmath.mp.eig(mpmath.matrix(matrix.tolist()), left=False, right=False))
+        # the spectrum of an isotropic medium is q, q, -q, -q, on which mpmath's QR iteration stalls unless it is moved
+        shift = mpmath.mpc("0.7310585786300049", "0.3678794411714423")
+        moved = mpmath.matrix(matrix.tolist()) + shift * mpmath.eye(len(matrix))
+        return [value - shift for value in mpmath.mp.eig(moved, left=False, right=False)]
 
     @staticmethod
     def polish(root: Any, delta: Array) -> Any:  # noqa: ARG004 - digits enough
