@@ -1,0 +1,56 @@
+// The REST interface of the service, as far as the page uses it.
+
+import { Problem } from "./problem.js";
+
+export class Client {
+  /** @param {string | URL} base address below which `v1/` lies */
+  constructor(base) {
+    this.base = base;
+  }
+
+  /** The full address of a path or link of the service. */
+  address(path) {
+    return new URL(path, this.base).href;
+  }
+
+  async #ask(path, options = {}) {
+    let response;
+    try {
+      response = await fetch(this.address(path), { headers: { accept: "application/json" }, ...options });
+    } catch (error) {
+      if (error.name === "AbortError") throw error;
+      throw new Problem({ detail: String(error.message ?? error) }, true);
+    }
+    if (!response.ok) throw await Problem.from(response);
+    return response.status === 204 ? null : response.json();
+  }
+
+  async demonstrations() {
+    return (await this.#ask("v1/demonstrations")).demonstrations;
+  }
+
+  async minerals() {
+    return (await this.#ask("v1/minerals")).minerals;
+  }
+
+  /** Ask for a render; the answer is the job. */
+  start(request) {
+    return this.#ask("v1/renders", {
+      method: "POST",
+      headers: { accept: "application/json", "content-type": "application/json" },
+      body: JSON.stringify(request),
+    });
+  }
+
+  job(id, signal) {
+    return this.#ask(`v1/renders/${encodeURIComponent(id)}`, { signal });
+  }
+
+  manifest(job, signal) {
+    return this.#ask(job.links.manifest, { signal });
+  }
+
+  dismiss(id) {
+    return this.#ask(`v1/renders/${encodeURIComponent(id)}`, { method: "DELETE" });
+  }
+}

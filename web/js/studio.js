@@ -1,0 +1,318 @@
+// What the page is doing: the form's values, the film on the stage, where the stage stands, what went wrong.
+
+import { apart, normalise, same } from "./angle.js";
+import { Film } from "./film.js";
+import { Player } from "./player.js";
+import { FIRST_LOOK, OFFERED, equal, nearestFrame, still } from "./request.js";
+import { defaultsOf, fieldsOf } from "./schema.js";
+import { ended, follow } from "./follow.js";
+import { Problem } from "./problem.js";
+import { Stills } from "./stills.js";
+
+export class Studio extends EventTarget {
+  #following = new AbortController();
+
+  constructor(client) {
+    super();
+    this.client = client;
+    this.demonstrations = [];
+    this.minerals = [];
+    this.demonstration = null;
+    this.fields = [];
+    this.values = {};
+    this.settings = structuredClone(OFFERED);
+    this.film = null; // what was asked for last
+    this.stale = null; // the last picture of the scene before, until the first of this one is there
+    this.under = null; // an earlier film of the same scene: it stands in for frames that are still to come
+    this.asking = false; // a request is on its way to the service
+    this.angle = 0;
+    this.problem = null;
+    this.stills = new Stills(
+      client,
+      () => this.changed(),
+      (error) => this.fail(error),
+    );
+    this.player = new Player(
+      () => this.film?.count ?? 0,
+      () => this.#advance(),
+    );
+  }
+
+  /** Tell the page to look again. */
+  changed() {
+    this.dispatchEvent(new Event("change"));
+  }
+
+  /** What can be chosen; then the view that a link asks for, else the first look. */
+  async open(view) {
+    [this.demonstrations, this.minerals] = await Promise.all([this.client.demonstrations(), this.client.minerals()]);
+    await this.show(view(this));
+  }
+
+  /** The fields of a demonstration, by name; of the first where the name is not known. */
+  fieldsFor(name) {
+    const found = this.demonstrations.find((d) => d.name === name) ?? this.demonstrations[0];
+    return found ? fieldsOf(found.parameters) : [];
+  }
+
+  choose(name) {
+    this.demonstration = this.demonstrations.find((d) => d.name === name) ?? this.demonstrations[0] ?? null;
+    this.fields = this.fieldsFor(this.demonstration?.name);
+    this.values = defaultsOf(this.fields);
+    this.changed();
+  }
+
+  /** Set the form and the stage as a link says, and render that. */
+  async show({ demonstration, parameters, settings, angle }) {
+    this.choose(demonstration ?? this.demonstration?.name);
+    Object.assign(this.values, parameters);
+    this.settings = settings ?? structuredClone(OFFERED);
+    this.angle = normalise(angle ?? 0);
+    await this.render(settings ?? FIRST_LOOK);
+  }
+
+  set(name, value) {
+    this.values = { ...this.values, [name]: value };
+    this.changed();
+  }
+
+  setPicture(name, value) {
+    this.settings = { ...this.settings, [name]: value };
+    this.changed();
+  }
+
+  /** What the Render button would ask for. */
+  get wanted() {
+    return this.#request(this.values, this.settings);
+  }
+
+  /** Whether the form says something else than what stands on the stage. */
+  get differs() {
+    return this.film !== null && !equal(this.wanted, this.film.request);
+  }
+
+  #request(values, settings) {
+    return { demonstration: this.demonstration.name, parameters: structuredClone(values), ...structuredClone(settings) };
+  }
+
+  /** Render what the form says, as the visitor asked for it. */
+  async press() {
+    await this.render(this.settings);
+  }
+
+  /** Render the present scene anew with another analyser, everything else as it stands on the stage. */
+  async analyse(degrees) {
+    this.set("analyser_deg", degrees);
+    const request = this.film?.request;
+    if (!request) return this.render(FIRST_LOOK);
+    return this.#begin({ ...request, parameters: { ...request.parameters, analyser_deg: degrees } }, this.film.first);
+  }
+
+  async render(settings) {
+    await this.#begin(this.#request(this.values, settings), settings === FIRST_LOOK);
+  }
+
+  async #begin(request, first) {
+    this.#following.abort();
+    const following = new AbortController();
+    this.#following = following;
+    this.problem = null;
+    this.asking = true;
+    this.changed();
+    await this.#letGo(this.film);
+    try {
+      const job = await this.client.start(request);
+      if (following.signal.aborted) return void (await this.client.dismiss(job.id));
+      this.#mount(new Film(this.client, request, job, first));
+      this.asking = false;
+      this.changed();
+      await Promise.all([this.#describe(this.film), this.#watch(this.film, following.signal)]);
+    } catch (error) {
+      if (!following.signal.aborted) this.fail(error);
+    } finally {
+      if (this.#following === following) this.asking = false;
+      this.changed();
+    }
+  }
+
+  /** A film that nobody looks forward to any more need not be finished. */
+  async #letGo(film) {
+    if (!film || ended(film.job)) return;
+    try {
+      film.job = await this.client.dismiss(film.job.id) ?? { ...film.job, status: "dismissed" };
+    } catch {
+      film.job = { ...film.job, status: "dismissed" }; // it may have ended by itself; what matters is the new request
+    }
+  }
+
+  #mount(film) {
+    const before = this.film;
+    if (before?.scene === film.scene) {
+      this.under = before.loaded > 0 ? before : this.under;
+    } else {
+      this.stale = this.view?.picture ?? null;
+      this.under = null;
+    }
+    this.film = film;
+    const index = nearestFrame(film.request, this.angle);
+    if (before?.scene !== film.scene && index !== 0) {
+      // The frames come in their own order: one coarse picture of where the stage stands comes before them.
+      this.stills.ask(still(film.request, this.angle, "draft"));
+    }
+  }
+
+  async #watch(film, signal) {
+    const take = async (job) => {
+      try {
+        await film.take(job, () => this.changed());
+      } catch (error) {
+        if (!signal.aborted) this.fail(error);
+      }
+      if (ended(job) && !signal.aborted) this.#finish(film, job);
+      this.changed();
+    };
+    const taking = [take(film.job)];
+    if (!ended(film.job)) await follow(this.client, film.job, (job) => taking.push(take(job)), signal);
+    await Promise.all(taking);
+  }
+
+  /** The manifest tells of the scene from the beginning. */
+  async #describe(film) {
+    film.manifest = await this.client.manifest(film.job);
+    this.changed();
+  }
+
+  #finish(film, job) {
+    film.lasted ??= (performance.now() - film.began) / 1000;
+    if (job.status === "failed") this.fail(new Problem(job.problem ?? {}));
+    if (job.status === "successful" && film === this.film && film.loaded === film.count) this.under = null;
+  }
+
+  async cancel() {
+    await this.#letGo(this.film);
+    if (this.film) this.film.lasted ??= (performance.now() - this.film.began) / 1000;
+    this.#following.abort();
+    this.changed();
+  }
+
+  fail(error) {
+    this.problem = error;
+    this.changed();
+  }
+
+  get running() {
+    return this.asking || (this.film !== null && !ended(this.film.job));
+  }
+
+  // ---- the stage
+
+  /** Turn the stage to an angle; where no frame stands exactly there, ask for that one picture. */
+  turn(angle) {
+    this.angle = normalise(angle);
+    const film = this.film;
+    if (film && !same(film.angle(nearestFrame(film.request, this.angle)), this.angle)) {
+      this.stills.ask(still(film.request, this.angle));
+    }
+    this.changed();
+  }
+
+  /** Turn the stage to frame i of the film. */
+  turnToFrame(index) {
+    if (!this.film) return;
+    const { count } = this.film;
+    this.turn(this.film.angle(((index % count) + count) % count));
+  }
+
+  /** Turn the stage to the frame that stands nearest to an angle. */
+  turnNear(angle) {
+    if (this.film) this.turnToFrame(nearestFrame(this.film.request, angle));
+  }
+
+  /** Turn the stage to the first or the last frame. */
+  toEnd(last) {
+    this.pause();
+    this.turnToFrame(last ? -1 : 0);
+  }
+
+  get frame() {
+    return this.film ? nearestFrame(this.film.request, this.angle) : 0;
+  }
+
+  step(by) {
+    this.pause();
+    this.turnToFrame(this.frame + by);
+  }
+
+  play() {
+    this.player.play();
+    this.changed();
+  }
+
+  pause() {
+    if (!this.player.playing) return;
+    this.player.pause();
+    this.changed();
+  }
+
+  #advance() {
+    const film = this.film;
+    if (!film || film.count < 2) return false;
+    for (let on = 1; on <= film.count; on += 1) {
+      const index = (this.frame + on) % film.count;
+      if (this.#exact(film.angle(index))) {
+        this.angle = film.angle(index);
+        this.changed();
+        return true;
+      }
+      if (!ended(film.job)) return this.#catchUp(); // it is on its way
+    }
+    return false;
+  }
+
+  /** While frames are coming and the next one is not there: go to the one that came last. */
+  #catchUp() {
+    const { newest } = this.film;
+    if (newest === null || newest === this.frame) return false;
+    this.angle = this.film.angle(newest);
+    this.changed();
+    return true;
+  }
+
+  /** The picture of exactly this angle, the best there is: the film's own, a still, the earlier film's. */
+  #exact(angle) {
+    const film = this.film;
+    if (!film) return undefined;
+    const own = at(film, angle);
+    return (
+      own ?? this.stills.picture(still(film.request, angle)) ?? at(this.under, angle) ?? this.stills.picture(still(film.request, angle, "draft"))
+    );
+  }
+
+  /**
+   * What to put on the stage now.
+   *
+   * @returns {{picture: Picture, state: "exact" | "waiting" | "stale"} | null}
+   *   "waiting": of this scene, but of another angle; "stale": of the scene before
+   */
+  get view() {
+    const exact = this.#exact(this.angle);
+    if (exact) return { picture: exact, state: "exact" };
+    const near = [this.film, this.under]
+      .map((film) => film?.nearest(nearestFrame(film.request, this.angle)))
+      .filter(Boolean)
+      .sort((a, b) => apart(a.angle, this.angle) - apart(b.angle, this.angle))[0];
+    if (near) return { picture: near, state: "waiting" };
+    return this.stale ? { picture: this.stale, state: "stale" } : null;
+  }
+
+  /** What the manifest says of the scene on the stage, null until it is there. */
+  get scene() {
+    return this.film?.manifest?.scene ?? null;
+  }
+}
+
+function at(film, angle) {
+  if (!film) return undefined;
+  const index = nearestFrame(film.request, angle);
+  return same(film.angle(index), angle) ? film.picture(index) : undefined;
+}
