@@ -86,7 +86,8 @@ class _Formula(Dispersion):
     def _is_a_real_index(self) -> Self:
         shortest, longest = (end * 1e-3 for end in self.range_nm)
         for pole in self._poles_um2():
-            if shortest**2 <= pole <= longest**2:
+            # Rounding must not put a pole at an end of the range outside it.
+            if shortest**2 * (1.0 - 1e-9) <= pole <= longest**2 * (1.0 + 1e-9):
                 raise ValueError(f"the formula has a pole at {1e3 * math.sqrt(pole):.6g} nm, inside range_nm")
         squared = self._squared(np.linspace(shortest, longest, 257) ** 2)
         if not bool(np.all(squared > 0.0)):  # also where NaN

@@ -9,9 +9,9 @@ be trusted in its symmetry.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator
 
 from minerals_db.dispersion import AnyDispersion
 from minerals_db.fields import Entry, Key, Known, Positive, Status, Text
@@ -89,10 +89,12 @@ class Mineral(Entry):
     system: CrystalSystem
     point_group: PointGroup
     optical_class: OpticalClass
-    optic_sign: Literal["positive", "negative"] | None = Field(None, description="None where isotropic")
     cell: Cell
     dispersion: Mapping[str, AnyDispersion] = Field(
         description="Principal refractive indices: n; o and e; or by crystal axis a, b, c"
+    )
+    optic_sign: Literal["positive", "negative"] | None = Field(
+        None, validate_default=True, description="Of the birefringence; None where isotropic"
     )
     cleavage: tuple[Cleavage, ...] = ()
     sources: Mapping[Key, Source] = Field(description="Every source that this entry names, by key")
@@ -144,31 +146,17 @@ class Mineral(Entry):
             raise ValueError(f"{system} minerals have the indices {wanted}, not {', '.join(sorted(dispersion))}")
         return dispersion
 
-    @model_validator(mode="after")
-    def _sign_agrees(self) -> Self:
-        if self.optical_class == "isotropic":
-            if self.optic_sign is not None:
-                raise ValueError("optic_sign: an isotropic mineral has none")
-            return self
-        if self.optic_sign is None:
-            raise ValueError(f"optic_sign: a {self.optical_class} mineral has one")
-        if self.optical_class == "uniaxial":
-            n_o, n_e = (float(self.dispersion[axis].index(SODIUM_D_NM)) for axis in ("o", "e"))
-            if n_o != n_e and (n_e > n_o) != (self.optic_sign == "positive"):
-                raise ValueError(f"optic_sign: {self.optic_sign}, but n_o {n_o:.5f} and n_e {n_e:.5f} at 589.3 nm")
-        return self
-
-    @model_validator(mode="after")
-    def _sources_are_told(self) -> Self:
-        known: list[tuple[str, Known]] = [("cell", self.cell)]
-        known += [(f"dispersion.{axis}", curve) for axis, curve in self.dispersion.items()]
-        known += [(f"cleavage.{number}", plane) for number, plane in enumerate(self.cleavage)]
-        missing = [f"{path}.source {record.source!r}" for path, record in known if record.source not in self.sources]
-        missing += [
-            f"sources.{key}.via {source.via!r}"
-            for key, source in self.sources.items()
-            if source.via is not None and source.via not in self.sources
-        ]
-        if missing:
-            raise ValueError(f"unknown source: {', '.join(missing)}")
-        return self
+    @field_validator("optic_sign")
+    @classmethod
+    def _sign_agrees(cls, sign: str | None, info: ValidationInfo) -> str | None:
+        optical_class: OpticalClass | None = info.data.get("optical_class")
+        dispersion: Mapping[str, AnyDispersion] | None = info.data.get("dispersion")
+        if optical_class == "isotropic" and sign is not None:
+            raise ValueError("an isotropic mineral has no optic sign")
+        if optical_class in ("uniaxial", "biaxial") and sign is None:
+            raise ValueError(f"a {optical_class} mineral has an optic sign, positive or negative")
+        if optical_class == "uniaxial" and dispersion is not None:
+            n_o, n_e = (float(dispersion[axis].index(SODIUM_D_NM)) for axis in ("o", "e"))
+            if n_o != n_e and (n_e > n_o) != (sign == "positive"):
+                raise ValueError(f"{sign}, but n_o is {n_o:.5f} and n_e is {n_e:.5f} at {SODIUM_D_NM} nm")
+        return sign

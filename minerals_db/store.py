@@ -40,6 +40,8 @@ class _Loader(_BASE):  # type: ignore[misc]  # the base is chosen at run time
         seen: set[Hashable] = set()
         for key_node, _ in node.value:
             key = self.construct_object(key_node, deep=True)
+            if not isinstance(key, Hashable):
+                continue  # the loader itself refuses it below
             if key in seen:
                 raise yaml.constructor.ConstructorError(None, None, f"repeated key {key!r}", key_node.start_mark)
             seen.add(key)
@@ -64,59 +66,73 @@ def _parse(name: str, data: bytes, faults: list[DataFault]) -> dict[Hashable, An
 
 
 def _faults(name: str, error: ValidationError) -> Iterator[DataFault]:
-    """Translate pydantic's list."""
+    """Translate pydantic's list into places of the file and plain words."""
     for fault in error.errors(include_url=False, include_context=False, include_input=False):
-        # Tags of the dispersion models are no fields of the file.
-        field = ".".join(str(part) for part in fault["loc"])
-        yield DataFault(name, field, fault["msg"].removeprefix("Value error, "))
+        place = list(fault["loc"])
+        if place[:1] == ["dispersion"] and len(place) > 2:
+            del place[2]  # the name of the curve's model, which is no field
+        reason = {"extra_forbidden": "unknown field", "missing": "missing"}.get(fault["type"], fault["msg"])
+        yield DataFault(name, ".".join(map(str, place)), reason.removeprefix("Value error, "))
 
 
-def _used_sources(entry: dict[Hashable, Any], sources: Mapping[str, Source]) -> dict[str, Source]:
-    """Return the shared sources that the records of an entry name, and those that carry them."""
-    named: set[str] = set()
+def _named_sources(node: object, path: tuple[str, ...] = ()) -> Iterator[tuple[str, str]]:
+    """Yield the place and the key of every ``source`` and ``via`` in a file."""
+    if isinstance(node, dict):
+        for field, child in node.items():
+            if field in ("source", "via") and isinstance(child, str):
+                yield ".".join((*path, field)), child
+            else:
+                yield from _named_sources(child, (*path, str(field)))
+    elif isinstance(node, list):
+        for number, child in enumerate(node):
+            yield from _named_sources(child, (*path, str(number)))
 
-    def walk(node: object) -> None:
-        if isinstance(node, dict):
-            if isinstance(node.get("source"), str):
-                named.add(node["source"])
-            for child in node.values():
-                walk(child)
-        elif isinstance(node, list):
-            for child in node:
-                walk(child)
 
-    walk(entry)
-    used = {key: sources[key] for key in sorted(named) if key in sources}
-    for source in list(used.values()):
-        if source.via is not None and source.via in sources:
-            used[source.via] = sources[source.via]
-    return used
+def _add_sources(
+    name: str, entry: dict[Hashable, Any], shared: Mapping[str, Any], faults: list[DataFault]
+) -> frozenset[str]:
+    """Put the shared sources that an entry names, and those that carry them, beside its own; return their keys."""
+    own = entry.get("sources", {})
+    if not isinstance(own, dict):
+        return frozenset()  # the schema says so
+    told = {**shared, **own}
+    named = list(_named_sources(entry))
+    faults.extend(DataFault(name, field, f"unknown source {key!r}") for field, key in named if key not in told)
+    used = set(own) | {key for _, key in named if key in told}
+    used |= {via for key in used for _, via in _named_sources(told[key]) if via in told}
+    entry["sources"] = {key: told[key] for key in sorted(used, key=str)}
+    return frozenset(key for key in used if key not in own)
 
 
 def _read_minerals(files: Mapping[str, bytes]) -> Mapping[str, Mineral]:
     """Return the minerals that the files (by name) describe."""
-    faults: list[DataFault] = []
-    sources: dict[str, Source] = {}
-    if SOURCES_FILE in files:
-        content = _parse(SOURCES_FILE, files[SOURCES_FILE], faults)
+    faults = [DataFault(name, "", "must end in .yaml") for name in sorted(files) if not name.endswith(".yaml")]
+    shared = _parse(SOURCES_FILE, files[SOURCES_FILE], faults) if SOURCES_FILE in files else None
+    sources: dict[str, Any] = {}
+    if shared is not None:
+        sources = {str(key): source for key, source in shared.items()}
+        faults += [
+            DataFault(SOURCES_FILE, field, f"unknown source {key!r}")
+            for field, key in _named_sources(sources)
+            if key not in sources
+        ]
         try:
-            sources = _SOURCES.validate_python(content) if content is not None else {}
+            _SOURCES.validate_python(sources)
         except ValidationError as error:
             faults += _faults(SOURCES_FILE, error)
     found: dict[str, Mineral] = {}
     for name in sorted(files):
-        if name == SOURCES_FILE:
+        if name == SOURCES_FILE or not name.endswith(".yaml"):
             continue
         entry = _parse(name, files[name], faults)
         if entry is None:
             continue
-        own = entry.get("sources", {})
-        if isinstance(own, dict):
-            entry["sources"] = _used_sources(entry, sources) | own
+        added = tuple(f"sources.{key}." for key in _add_sources(name, entry, sources, faults))
         try:
             mineral = Mineral.model_validate(entry)
         except ValidationError as error:
-            faults += _faults(name, error)
+            # What is wrong with a shared source has been said once, of its own file.
+            faults += [fault for fault in _faults(name, error) if not f"{fault.field}.".startswith(added)]
             continue
         if mineral.id != PurePosixPath(name).stem:
             faults.append(DataFault(name, "id", f"must be the name of the file, not {mineral.id!r}"))
@@ -127,7 +143,7 @@ def _read_minerals(files: Mapping[str, bytes]) -> Mapping[str, Mineral]:
 
 
 def _read_files(folder: Traversable) -> dict[str, bytes]:
-    return {file.name: file.read_bytes() for file in folder.iterdir() if file.name.endswith(".yaml")}
+    return {file.name: file.read_bytes() for file in folder.iterdir() if file.name.endswith((".yaml", ".yml"))}
 
 
 def load_minerals(folder: Traversable) -> Mapping[str, Mineral]:

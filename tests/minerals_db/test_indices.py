@@ -1,0 +1,147 @@
+"""The minerals' optical constants against figures from sources other than those of their coefficients.
+
+Figures "from memory" are standard values of textbooks that were not looked up again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import minerals_db
+
+D, F, C, E = 589.3, 486.1, 656.3, 546.1
+
+# mineral, axis, nm, index, tolerance, where the index comes from
+FIGURES = [
+    # Our coefficients: Ghosh 1999, whose fit runs 3e-4 under Martens for the e ray.
+    ("calcite", "o", D, 1.65835, 5e-5, "F. F. Martens, Ann. Phys. 6, 603 (1901); from memory"),
+    ("calcite", "e", D, 1.48640, 3e-4, "F. F. Martens, Ann. Phys. 6, 603 (1901); from memory"),
+    ("calcite", "o", D, 1.658, 5e-4, "Handbook of Mineralogy (2001-2005)"),
+    ("calcite", "e", D, 1.486, 5e-4, "Handbook of Mineralogy (2001-2005)"),
+    # Our coefficients: Ghosh 1999.
+    ("quartz", "o", D, 1.54424, 5e-5, "classical textbook value; from memory"),
+    ("quartz", "e", D, 1.55335, 6e-5, "classical textbook value; from memory"),
+    ("quartz", "o", F, 1.54968, 5e-5, "T. Radhakrishnan, Proc. Indian Acad. Sci. 31, 22 (1951), his formula"),
+    ("quartz", "e", F, 1.55897, 5e-5, "T. Radhakrishnan, Proc. Indian Acad. Sci. 31, 22 (1951), his formula"),
+    ("quartz", "o", C, 1.54189, 6e-5, "T. Radhakrishnan, Proc. Indian Acad. Sci. 31, 22 (1951), his formula"),
+    ("quartz", "e", C, 1.55093, 8e-5, "T. Radhakrishnan, Proc. Indian Acad. Sci. 31, 22 (1951), his formula"),
+    # Our coefficients: Malitson and Dodge 1972 (synthetic).
+    ("corundum", "o", D, 1.768, 5e-4, "gemmological constant of sapphire (Schumann, Gemstones of the World)"),
+    ("corundum", "e", D, 1.760, 5e-4, "gemmological constant of sapphire (Schumann, Gemstones of the World)"),
+    # Our coefficients: Peter 1923.
+    ("diamond", "n", D, 2.4175, 5e-4, "Handbook of Mineralogy: 2.4175 to 2.4178; from memory"),
+    # Our coefficients: Malitson 1963.
+    ("fluorite", "n", D, 1.43385, 6e-5, "classical textbook value; from memory"),
+    ("fluorite", "n", F, 1.43705, 5e-5, "M. Daimon, A. Masumura, Appl. Opt. 41, 5275 (2002), 20 °C"),
+    ("fluorite", "n", E, 1.43497, 5e-5, "M. Daimon, A. Masumura, Appl. Opt. 41, 5275 (2002), 20 °C"),
+    ("fluorite", "n", C, 1.43249, 5e-5, "M. Daimon, A. Masumura, Appl. Opt. 41, 5275 (2002), 20 °C"),
+    # Our coefficients: Li 1976.
+    ("halite", "n", D, 1.5443, 3e-4, "classical textbook value; from memory"),
+    ("halite", "n", F, 1.5541, 1.2e-3, "B. Powell in A. Beer, Einleitung in die höhere Optik (1853), p. 255"),
+    ("halite", "n", C, 1.5415, 1.2e-3, "B. Powell in A. Beer, Einleitung in die höhere Optik (1853), p. 255"),
+    # Our coefficients: Li 1976.
+    ("sylvite", "n", D, 1.4903, 5e-5, "Handbook of Mineralogy (2001-2005)"),
+    # Our coefficients: Dodge 1984 (synthetic).
+    ("sellaite", "o", D, 1.378, 5e-4, "Handbook of Mineralogy (2001-2005)"),
+    ("sellaite", "e", D, 1.390, 5e-4, "Handbook of Mineralogy (2001-2005)"),
+    # Our table: a natural gem (Karnke); theirs: synthetic.
+    (
+        "spinel",
+        "n",
+        430.8,
+        1.73149,
+        3e-4,
+        "W. J. Tropf, M. E. Thomas in Palik, Handbook of Optical Constants II (1991)",
+    ),
+    ("spinel", "n", F, 1.72440, 3e-4, "W. J. Tropf, M. E. Thomas in Palik, Handbook of Optical Constants II (1991)"),
+    ("spinel", "n", E, 1.71903, 3e-4, "W. J. Tropf, M. E. Thomas in Palik, Handbook of Optical Constants II (1991)"),
+    ("spinel", "n", D, 1.71610, 3e-4, "W. J. Tropf, M. E. Thomas in Palik, Handbook of Optical Constants II (1991)"),
+    ("spinel", "n", C, 1.71260, 3e-4, "W. J. Tropf, M. E. Thomas in Palik, Handbook of Optical Constants II (1991)"),
+    # Our coefficients: Devore 1951.
+    ("rutile", "o", 500.0, 2.7058, 9e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    ("rutile", "o", 600.0, 2.6034, 3e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    ("rutile", "o", 700.0, 2.5514, 3e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    ("rutile", "e", 600.0, 2.8900, 9e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    ("rutile", "e", 700.0, 2.8255, 9e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    # Our coefficients: Uchida 1971.
+    ("paratellurite", "o", E, 2.2931, 1e-3, "Elent-A, basic properties of TeO2"),
+    ("paratellurite", "o", 632.8, 2.2597, 1e-3, "Elent-A, basic properties of TeO2"),
+    ("paratellurite", "e", E, 2.4520, 1e-3, "Elent-A, basic properties of TeO2"),
+    ("paratellurite", "e", 632.8, 2.4119, 1e-3, "Elent-A, basic properties of TeO2"),
+    # Our coefficients: Debenham 1984.
+    ("sphalerite", "n", 500.0, 2.4208, 4e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    ("sphalerite", "n", 600.0, 2.3640, 2e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    ("sphalerite", "n", 700.0, 2.3333, 2e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    # Our coefficients: Stephens and Malitson 1952 (synthetic).
+    ("periclase", "n", D, 1.736, 2e-3, "Handbook of Mineralogy: 1.735 to 1.745; from memory"),
+]
+
+
+@pytest.mark.parametrize(("mineral", "axis", "nm", "index", "tolerance", "source"), FIGURES)
+def test_index(mineral: str, axis: str, nm: float, index: float, tolerance: float, source: str) -> None:
+    found = float(minerals_db.mineral(mineral).dispersion[axis].index(nm))
+    assert found == pytest.approx(index, abs=tolerance), source
+
+
+# birefringence n_e - n_o at the D line and its tolerance, from a source other than our coefficients'
+BIREFRINGENCE = [
+    ("calcite", -0.17195, 3e-4, "Martens 1901; from memory"),
+    ("quartz", 0.00911, 3e-5, "classical textbook value; from memory"),
+    ("corundum", -0.008, 5e-4, "gemmological constant of sapphire (Schumann, Gemstones of the World)"),
+    ("sellaite", 0.012, 5e-4, "Handbook of Mineralogy"),
+    ("fluorapatite", -0.003, 1.5e-3, "The Gemology Project, Apatite: 0.003"),
+    ("rutile", 0.292, 5e-3, "Handbook of Mineralogy: 2.605 to 2.613, 2.899 to 2.901"),
+    ("paratellurite", 0.1557, 5e-4, "Elent-A at 589.3 nm: 2.2738, 2.4295"),
+]
+
+
+@pytest.mark.parametrize(("mineral", "birefringence", "tolerance", "source"), BIREFRINGENCE)
+def test_birefringence(mineral: str, birefringence: float, tolerance: float, source: str) -> None:
+    dispersion = minerals_db.mineral(mineral).dispersion
+    found = float(dispersion["e"].index(D) - dispersion["o"].index(D))
+    assert found == pytest.approx(birefringence, abs=tolerance), source
+
+
+def test_fluorapatite_lies_where_apatites_do() -> None:
+    # The Gemology Project, Apatite: 1.63 to 1.64.
+    for curve in minerals_db.mineral("fluorapatite").dispersion.values():
+        assert 1.63 < float(curve.index(D)) < 1.64
+
+
+# n_F - n_C from a source other than our coefficients', relative tolerance
+DISPERSION = [
+    ("fluorite", "n", 0.00456, 0.01, "Daimon and Masumura 2002"),
+    ("quartz", "o", 0.00779, 0.01, "Radhakrishnan 1951"),
+    ("quartz", "e", 0.00804, 0.01, "Radhakrishnan 1951"),
+    ("spinel", "n", 0.01180, 0.02, "Tropf and Thomas 1991"),
+    ("halite", "n", 0.01274, 0.02, "Baden Powell, in Beer 1853"),
+    # Gem books give B-G 0.044; over C-F it is 0.58 of that.
+    ("diamond", "n", 0.58 * 0.044, 0.05, "Schumann, Gemstones of the World, B-G 0.044"),
+]
+
+
+@pytest.mark.parametrize(("mineral", "axis", "dispersion", "tolerance", "source"), DISPERSION)
+def test_dispersion(mineral: str, axis: str, dispersion: float, tolerance: float, source: str) -> None:
+    n_f, n_c = minerals_db.mineral(mineral).dispersion[axis].index([F, C])
+    assert n_f - n_c == pytest.approx(dispersion, rel=tolerance), source
+
+
+def test_every_mineral_is_compared_with_another_source() -> None:
+    compared = {row[0] for rows in (FIGURES, BIREFRINGENCE) for row in rows}
+    assert compared == set(minerals_db.minerals())
+
+
+@pytest.mark.parametrize("mineral", minerals_db.minerals())
+def test_dispersion_is_normal_in_the_visible(mineral: str) -> None:
+    # Transparent minerals: n falls with the wavelength. Kramers-Kronig allows nothing else away from absorption.
+    for curve in minerals_db.mineral(mineral).dispersion.values():
+        shortest, longest = max(380.0, curve.range_nm[0]), min(780.0, curve.range_nm[1])
+        indices = curve.index(np.linspace(shortest, longest, 2001))
+        assert np.all(np.diff(indices) < 0.0)
+
+
+@pytest.mark.parametrize("mineral", minerals_db.minerals())
+def test_most_of_the_visible_is_covered(mineral: str) -> None:
+    for curve in minerals_db.mineral(mineral).dispersion.values():
+        assert curve.covers(430.0, 750.0)
