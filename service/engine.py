@@ -242,6 +242,7 @@ class DaskEngine(_Closing):
         self._closed = False
         self._own_scratch = None if scratch else tempfile.TemporaryDirectory(prefix="isogyre-engine-")
         self._killed_worker: type[Exception] = distributed.KilledWorker
+        self._cancelled_by_dask: type[Exception] = distributed.client.FutureCancelledError
         self._quiet = _QuietLogs()
         os.environ.update(_ONE_THREAD)
         with dask.config.set(_DASK_CONFIG), _blocked_interrupts():
@@ -294,6 +295,8 @@ class DaskEngine(_Closing):
             return await task._result()
         except self._killed_worker:
             raise UnitLostError(f"unit {key} ended {ATTEMPTS} worker processes and was given up") from None
+        except self._cancelled_by_dask as error:  # not by us: that cancels this coroutine
+            raise UnitLostError(f"unit {key} was lost by the scheduler: {error}") from None
         finally:
             task.release()
 

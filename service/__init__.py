@@ -1,0 +1,1 @@
+"""The service: HTTP interface, jobs, artifacts, the command line."""

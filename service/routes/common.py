@@ -1,0 +1,54 @@
+"""What several routes need."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import Depends, Request, Response
+
+from service.problems import MEDIA_TYPE, Problem
+from service.workshop import Workshop
+
+__all__ = ["IMMUTABLE", "TheWorkshop", "is_known", "problem_answers", "unchanged"]
+
+IMMUTABLE = "public, max-age=31536000, immutable"
+"""``Cache-Control`` of what never changes under its address."""
+
+
+def _workshop(request: Request) -> Workshop:
+    workshop: Workshop = request.app.state.workshop
+    return workshop
+
+
+TheWorkshop = Annotated[Workshop, Depends(_workshop)]
+
+
+def is_known(request: Request, etag: str) -> bool:
+    """Return whether the caller has the content of this entity tag already (``If-None-Match``, RFC 9110 13.1.2)."""
+    asked = request.headers.get("if-none-match", "")
+    tags = [tag.strip().removeprefix("W/") for tag in asked.split(",")]
+    return "*" in tags or etag in tags
+
+
+def unchanged(etag: str, cache_control: str) -> Response:
+    """Return the answer to a caller who has the content already."""
+    return Response(status_code=304, headers={"ETag": etag, "Cache-Control": cache_control})
+
+
+def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return the OpenAPI description of answers that are problems."""
+    return {
+        status: {
+            "description": {
+                404: "There is nothing of this name (yet)",
+                413: "The body is too large",
+                415: "The body is not declared as JSON",
+                422: "The request cannot be carried out as it stands; `errors` names every wrong place",
+                400: "The body is not JSON",
+                503: "No render would be done now",
+            }[status],
+            "model": Problem,
+            "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
+        }
+        for status in statuses
+    }

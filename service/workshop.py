@@ -1,0 +1,122 @@
+"""Everything behind the HTTP interface, put together."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from collections.abc import Callable
+from typing import Self
+
+import structlog
+
+from crystal_core.errors import InputError
+from service.artifacts import ArtifactStore, make_folder
+from service.engine import DaskEngine, Engine
+from service.events import Bell
+from service.jobs import Runner
+from service.ledger import Ledger
+from service.settings import Settings
+from service.tile_shelf import TileShelf
+
+__all__ = ["Workshop"]
+
+
+class Workshop:
+    """Ledger, artifacts, engine and runner under one data directory; closed until `open` is called.
+
+    Parameters
+    ----------
+    settings : Settings
+        Where and how many.
+    make_engine : callable or None
+        Makes the engine; None: a `DaskEngine` after the settings.
+    """
+
+    settings: Settings
+    bell: Bell
+    ledger: Ledger
+    store: ArtifactStore
+    runner: Runner
+
+    def __init__(self, settings: Settings, make_engine: Callable[[], Engine] | None = None) -> None:
+        self.settings = settings
+        self.bell = Bell()
+        self.is_open = False
+        self._make_engine = make_engine or self._dask_engine
+        self._log = structlog.get_logger("isogyre.workshop")
+
+    def open(self) -> None:
+        """Open the ledger, start the engine, take up what is unfinished.
+
+        Raises
+        ------
+        InputError
+            The data directory cannot be used, or another service uses it.
+        """
+        folder = self.settings.data_dir
+        try:
+            for name in ("", "artifacts", "units", "assets", "scratch"):
+                make_folder(folder / name)
+            self._lock = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        except OSError as error:
+            raise InputError.at("ISOGYRE_DATA_DIR", f"{folder} cannot be used: {error.strerror}") from error
+        try:
+            self._take_lock()
+            self.ledger = Ledger(folder / "ledger.sqlite")
+        except BaseException:
+            os.close(self._lock)
+            raise
+        try:
+            self.store = ArtifactStore(folder / "artifacts")
+            self._engine = self._make_engine()
+            shelf = TileShelf(folder / "units")
+            self.runner = Runner(self.ledger, self._engine, self.store, shelf, self.bell, folder / "assets")
+            self.runner.open()
+        except BaseException:
+            self.ledger.close()
+            os.close(self._lock)
+            raise
+        self.is_open = True
+        self._log.info("open", data_dir=str(folder), workers=self._engine.workers)
+
+    def close(self) -> None:
+        """Stop; what has not ended is taken up at the next start."""
+        if not self.is_open:
+            return
+        self.is_open = False
+        self.bell.close()
+        self.runner.close()
+        self._engine.close()
+        self.ledger.close()
+        os.close(self._lock)
+        self._log.info("closed")
+
+    def check(self) -> str | None:
+        """Return why no render would be done now, None if all is well."""
+        if not self.is_open:
+            return "The service is starting or stopping"
+        if not self.runner.alive:
+            return "The runner has failed; the service must be started again"
+        self.ledger.check()
+        return None
+
+    def __enter__(self) -> Self:
+        """Open it."""
+        self.open()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close it."""
+        self.close()
+
+    def _take_lock(self) -> None:
+        # Two services on one ledger would do every job twice. The lock goes with the process, however it ends.
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            folder = self.settings.data_dir
+            raise InputError.at("ISOGYRE_DATA_DIR", f"{folder} is in use by another running service") from None
+
+    def _dask_engine(self) -> Engine:
+        settings = self.settings
+        return DaskEngine(settings.workers, niceness=settings.worker_niceness, scratch=settings.data_dir / "scratch")
