@@ -6,13 +6,14 @@ import importlib.metadata
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
 from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
 import service
 from crystal_core.errors import InputError
-from service.problems import add_handlers
+from service.problems import Problem, add_handlers
 from service.routes import catalogue, health, renders
 from service.settings import Settings
 from service.shield import Shield
@@ -77,9 +78,39 @@ def create_app(settings: Settings, *, workshop: Workshop | None = None) -> FastA
     for module in (catalogue, renders, health):
         app.include_router(module.router)
     app.frontend("/", directory=page_folder(), fallback=None, check_dir=True)
+    _describe_answers(app)
     add_handlers(app)
     app.add_middleware(Shield, max_body_bytes=settings.max_body_bytes)
     return app
+
+
+def _describe_answers(app: FastAPI) -> None:
+    """Correct the API's description where FastAPI cannot know better.
+
+    Problems are raised, no route returns them; FastAPI's own 422 never leaves this service; and the schema of an event
+    stream's items is a word of OpenAPI 3.2.
+    """
+    plain = app.openapi
+
+    def openapi() -> dict[str, Any]:
+        if app.openapi_schema is not None:
+            return app.openapi_schema
+        document = plain()
+        problem = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+        schemas: dict[str, Any] = document["components"]["schemas"]
+        schemas |= {**problem.pop("$defs"), "Problem": problem}
+        for name in ("HTTPValidationError", "ValidationError"):
+            schemas.pop(name, None)
+        for operations in document["paths"].values():
+            for operation in operations.values():
+                answers = operation["responses"]
+                if "application/json" in answers.get("422", {}).get("content", {}):
+                    del answers["422"]
+                if "text/event-stream" in (content := answers.get("200", {}).get("content", {})):
+                    content["text/event-stream"] = {"schema": {"type": "string"}}
+        return document
+
+    app.openapi = openapi  # type: ignore[method-assign]
 
 
 def page_folder() -> Path:

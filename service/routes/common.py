@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from fastapi import Depends, Request, Response
 
-from service.problems import MEDIA_TYPE, Problem
+from service.problems import MEDIA_TYPE
 from service.workshop import Workshop
 
 __all__ = ["IMMUTABLE", "TheWorkshop", "is_known", "problem_answers", "unchanged"]
@@ -47,7 +47,6 @@ def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
                 400: "The body is not JSON",
                 503: "No render would be done now",
             }[status],
-            "model": Problem,
             "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
         }
         for status in statuses

@@ -1,8 +1,8 @@
 """A stand-in for ``crystal_core.sequence`` whose units do as the test says; worker processes import it by name.
 
-Its one demonstration, ``fake``, has the parameters ``delay_s`` (per unit), ``gate`` (path of a file without which no unit
-ends), ``fail`` ([frame, tile]: that unit raises), ``die`` ([frame, tile]: that unit ends its process), ``notes`` (path of a
-file to which each unit adds a line) and ``texture``.
+Its one demonstration, ``fake``, has the parameters ``delay_s`` (per unit), ``gate`` (path of a file without which no
+unit ends), ``fail`` ([frame, tile]: that unit raises), ``die`` ([frame, tile]: that unit ends its process), ``notes``
+(path of a file to which each unit adds a line) and ``texture``.
 """
 
 from __future__ import annotations
