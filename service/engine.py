@@ -37,8 +37,11 @@ T = TypeVar("T")
 WORKER_MEMORY = "2 GiB"
 """A unit that makes its process grow beyond this loses the process."""
 
-ATTEMPTS = 3
-"""A unit that ends this many worker processes is given up."""
+ATTEMPTS = 2
+"""A unit that was at hand when this many worker processes died is suspected and tried again, apart from other suspects;
+if as many die again, it is given up."""
+
+_TRIAL_PRIORITY = 1_000_000
 
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS"), "1")
 
@@ -240,6 +243,7 @@ class DaskEngine(_Closing):
         self._pending: set[concurrent.futures.Future[Any]] = set()
         self._lock = threading.Lock()
         self._closed = False
+        self._trial = asyncio.Lock()
         self._own_scratch = None if scratch else tempfile.TemporaryDirectory(prefix="isogyre-engine-")
         self._killed_worker: type[Exception] = distributed.KilledWorker
         self._cancelled_by_dask: type[Exception] = distributed.client.FutureCancelledError
@@ -271,16 +275,19 @@ class DaskEngine(_Closing):
     ) -> concurrent.futures.Future[T]:
         """Queue ``function(*args)``; see `Engine.submit`.
 
-        The future's exception is `UnitLostError` if the unit ended ``ATTEMPTS`` processes.
+        The future's exception is `UnitLostError` if the unit ended twice ``ATTEMPTS`` processes.
         """
         with self._lock:
             if self._closed:
                 raise EngineClosedError(f"unit {key}: the engine has been closed")
-            # A key that Dask has not seen: it would answer a known one with the old result. The prefix is ours alone.
-            task = self._client.submit(
-                function, *args, key=f"unit-{next(self._order)}-{key}", priority=priority, pure=False, retries=0
-            )
-            future = asyncio.run_coroutine_threadsafe(self._carry(task, key), self._client.loop.asyncio_loop)
+
+            def start(order: int) -> Any:
+                # A key that Dask has not seen: it would answer a known one with the old result.
+                name = f"unit-{next(self._order)}-{key}"
+                return self._client.submit(function, *args, key=name, priority=order, pure=False, retries=0)
+
+            carrying = self._carry(start, start(priority), key)
+            future = asyncio.run_coroutine_threadsafe(carrying, self._client.loop.asyncio_loop)
             self._pending.add(future)
         future.add_done_callback(self._forget)
         return future
@@ -289,12 +296,22 @@ class DaskEngine(_Closing):
         with self._lock:
             self._pending.discard(future)
 
-    async def _carry(self, task: Any, key: str) -> Any:
-        """Wait for a Dask task on Dask's loop and let go of it, whatever becomes of it."""
+    async def _carry(self, start: Callable[[int], Any], task: Any, key: str) -> Any:
+        """Wait for a Dask task on Dask's loop and let go of it, whatever becomes of it.
+
+        Dask blames the death of a worker on every unit that was there, also on one that only waited for its turn. So a
+        blamed unit has another trial: at once, and never together with another one that has been blamed.
+        """
         try:
-            return await task._result()
+            try:
+                return await task._result()
+            except self._killed_worker:
+                async with self._trial:
+                    task.release()
+                    task = start(_TRIAL_PRIORITY)
+                    return await task._result()
         except self._killed_worker:
-            raise UnitLostError(f"unit {key} ended {ATTEMPTS} worker processes and was given up") from None
+            raise UnitLostError(f"unit {key} ended {2 * ATTEMPTS} worker processes and was given up") from None
         except self._cancelled_by_dask as error:  # not by us: that cancels this coroutine
             raise UnitLostError(f"unit {key} was lost by the scheduler: {error}") from None
         finally:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import os
 import signal
 import socket
 import sys
@@ -106,7 +107,8 @@ def _listen(host: str, port: int) -> socket.socket:
     except PermissionError as error:
         raise InputError.at("--port", f"port {port} may not be used: {error.strerror}") from error
     except OSError as error:
-        print(f"isogyre: cannot listen at {host} port {port}: {error.strerror}", file=sys.stderr)
+        reason = os.strerror(error.errno) if error.errno else str(error)
+        print(f"isogyre: cannot listen at {host} port {port}: {reason}", file=sys.stderr)
         raise SystemExit(1) from error
 
 

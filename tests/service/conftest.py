@@ -11,28 +11,15 @@ from fastapi.testclient import TestClient
 
 from crystal_core import sequence
 from service.app import create_app
-from service.engine import Engine, InlineEngine
+from service.engine import InlineEngine
 from service.settings import Settings
 from service.workshop import Workshop
-
-NAMES = [
-    "FrameRecord",
-    "RenderRequest",
-    "TileResult",
-    "assemble",
-    "demonstrations",
-    "frame_angle_deg",
-    "manifest",
-    "parse_request",
-    "render_tile",
-    "tile_grid",
-]
 
 
 @pytest.fixture
 def fake(monkeypatch: pytest.MonkeyPatch) -> None:
     """Put the stand-in in the place of the renderer."""
-    for name in NAMES:
+    for name in fake_sequence.NAMES:
         monkeypatch.setattr(sequence, name, getattr(fake_sequence, name), raising=False)
 
 
@@ -76,6 +63,3 @@ def finish(client: TestClient, address: str) -> dict[str, Any]:
 
     wait_until(ended)
     return job
-
-
-__all__ = ["Engine", "ask", "finish", "wait_until"]

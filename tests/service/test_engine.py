@@ -162,6 +162,17 @@ def test_a_unit_that_kills_its_processes_fails_alone() -> None:
         assert engine.submit(engine_units.add, 2, 2, key="after").result(60) == 4
 
 
+def test_units_beside_one_that_kills_are_not_blamed(tmp_path: Path) -> None:
+    with DaskEngine(1) as engine:  # one worker: what waits there is there at every death
+        gate = tmp_path / "gate"
+        engine.submit(engine_units.wait_for, gate, "open", key="gate")
+        poison = engine.submit(engine_units.die, key="poison")
+        beside = [engine.submit(engine_units.add, 1, n, key=f"beside-{n}") for n in range(4)]
+        gate.touch()
+        assert isinstance(poison.exception(60), UnitLostError)
+        assert [future.result(60) for future in beside] == [1, 2, 3, 4]
+
+
 def test_dask_leaves_nothing_on_stderr() -> None:
     code = (
         "import engine_units\n"
