@@ -22,6 +22,16 @@ from conftest import wait_until
 
 HERE = Path(__file__).parent
 
+# One client: each new one reads the system's certificates.
+HTTP = httpx2.Client(timeout=10, trust_env=False, verify=False)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _close_http() -> Iterator[None]:
+    with HTTP:
+        yield
+
+
 WATCH_CONNECTIONS = """
 import os, sys
 
@@ -59,7 +69,7 @@ class Service:
         self.family = psutil.Process(self.process.pid).children(recursive=True) if self.line else []
 
     def ask(self, **request: Any) -> str:
-        answer = httpx2.post(f"{self.address}v1/renders", json={"demonstration": "fake", **request}, timeout=10)
+        answer = HTTP.post(f"{self.address}v1/renders", json={"demonstration": "fake", **request})
         assert answer.status_code == 202, answer.text
         return self.address.rstrip("/") + answer.headers["location"]
 
@@ -93,15 +103,15 @@ def running(folder: Path, host: str = "127.0.0.1", port: int = 0, **environment:
 
 
 def job(address: str) -> dict[str, Any]:
-    answer: dict[str, Any] = httpx2.get(address, timeout=10).json()
+    answer: dict[str, Any] = HTTP.get(address).json()
     return answer
 
 
 def test_it_serves_says_where_and_ends_cleanly_on_sigterm_with_an_open_stream(service: Service, tmp_path: Path) -> None:
     assert service.line.startswith("Isogyre: http://127.0.0.1:")
     assert service.line.endswith("/\n")
-    assert httpx2.get(f"{service.address}readyz", timeout=10).status_code == 200
-    assert httpx2.get(service.address, timeout=10).headers["content-type"].startswith("text/html")
+    assert HTTP.get(f"{service.address}readyz").status_code == 200
+    assert HTTP.get(service.address).headers["content-type"].startswith("text/html")
 
     done = service.ask(frames=1)
     wait_until(lambda: job(done)["status"] == "successful")
@@ -109,7 +119,7 @@ def test_it_serves_says_where_and_ends_cleanly_on_sigterm_with_an_open_stream(se
     told: list[str] = []
 
     def listen() -> None:
-        with httpx2.stream("GET", f"{endless}/events", timeout=30) as answer:
+        with HTTP.stream("GET", f"{endless}/events", timeout=30) as answer:
             told.extend(answer.iter_lines())
 
     listener = threading.Thread(target=listen)
@@ -194,7 +204,7 @@ def test_a_killed_service_loses_no_job_and_leaves_no_worker(tmp_path: Path) -> N
         seen = job(service.address + path)
         assert seen["progress"]["frames_done"] == 5
         for frame in seen["frames"]:
-            assert httpx2.get(service.address.rstrip("/") + frame["links"]["png"], timeout=10).status_code == 200
+            assert HTTP.get(service.address.rstrip("/") + frame["links"]["png"]).status_code == 200
     again = len(notes.read_text(encoding="utf-8").splitlines()) - before
     assert again <= 20 - 8  # the two finished frames were kept
 
