@@ -1,5 +1,6 @@
 // The frames of one render, arriving one by one.
 
+import { ended } from "./follow.js";
 import { frameAngle, lookKey, sceneKey } from "./request.js";
 
 /** Load a picture whole, decoded and ready to be drawn. */
@@ -44,6 +45,11 @@ export class Film {
 
   get loaded() {
     return this.#pictures.size;
+  }
+
+  /** The job's status, but "running" until the pictures of an ended job are here too. */
+  get status() {
+    return ended(this.job) && this.loaded < this.job.frames.length ? "running" : this.job.status;
   }
 
   angle(index) {

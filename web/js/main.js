@@ -36,8 +36,9 @@ still.addEventListener("change", () => still.matches && studio.pause());
 let writing = 0;
 let written = location.hash;
 studio.addEventListener("change", () => {
-  clearTimeout(writing);
+  if (writing) return; // it will write what then is
   writing = setTimeout(() => {
+    writing = 0;
     const { film, player, angle, fields } = studio;
     if (!film) return;
     const text = writeLink({ request: film.request, angle: player.playing ? null : angle, fields, first: film.first });

@@ -28,6 +28,11 @@ export class Stills {
     return this.#films.get(this.#key(request))?.picture(0);
   }
 
+  /** A picture of this scene at this angle, however it was drawn; the latest, if there are several. */
+  anyOf(scene, angle) {
+    return [...this.#films.values()].reverse().find((film) => film.scene === scene && film.angle(0) === angle)?.picture(0);
+  }
+
   /** Whether the picture last asked for is still to come. */
   get waiting() {
     return this.#present !== null;

@@ -11,6 +11,7 @@ import { Stills } from "./stills.js";
 
 export class Studio extends EventTarget {
   #following = new AbortController();
+  #turn = 0; // counts what has been asked for
 
   constructor(client) {
     super();
@@ -113,36 +114,44 @@ export class Studio extends EventTarget {
   }
 
   async #begin(request, first) {
-    this.#following.abort();
-    const following = new AbortController();
-    this.#following = following;
+    const turn = (this.#turn += 1);
     this.problem = null;
     this.asking = true;
     this.changed();
-    await this.#letGo(this.film);
+    let film = null;
     try {
       const job = await this.client.start(request);
-      if (following.signal.aborted) return void (await this.client.dismiss(job.id));
-      this.#mount(new Film(this.client, request, job, first));
-      this.asking = false;
-      this.changed();
-      await Promise.all([this.#describe(this.film), this.#watch(this.film, following.signal)]);
+      film = new Film(this.client, request, job, first);
     } catch (error) {
-      if (!following.signal.aborted) this.fail(error);
-    } finally {
-      if (this.#following === following) this.asking = false;
-      this.changed();
+      if (turn === this.#turn) this.fail(error);
     }
+    if (turn !== this.#turn) return film ? this.#letGo(film) : undefined; // something else has been asked for meanwhile
+    this.asking = false;
+    // What is being rendered goes on where the new request was refused, and is let go where it was accepted.
+    if (film) await this.#take(film);
+    else this.changed();
+  }
+
+  async #take(film) {
+    this.#following.abort();
+    this.#following = new AbortController();
+    const { signal } = this.#following;
+    const before = this.film;
+    this.#mount(film);
+    this.changed();
+    try {
+      await Promise.all([this.#letGo(before), this.#describe(film), this.#watch(film, signal)]);
+    } catch (error) {
+      if (!signal.aborted) this.fail(error);
+    }
+    this.changed();
   }
 
   /** A film that nobody looks forward to any more need not be finished. */
   async #letGo(film) {
     if (!film || ended(film.job)) return;
-    try {
-      film.job = await this.client.dismiss(film.job.id) ?? { ...film.job, status: "dismissed" };
-    } catch {
-      film.job = { ...film.job, status: "dismissed" }; // it may have ended by itself; what matters is the new request
-    }
+    film.job = { ...film.job, status: "dismissed" };
+    await this.client.dismiss(film.job.id).catch(() => {}); // it may have ended by itself; nobody waits for it
   }
 
   #mount(film) {
@@ -155,7 +164,9 @@ export class Studio extends EventTarget {
     }
     this.film = film;
     const index = nearestFrame(film.request, this.angle);
-    if (before?.scene !== film.scene && index !== 0) {
+    if (!same(film.angle(index), this.angle)) {
+      this.stills.ask(still(film.request, this.angle)); // no frame of the film will ever stand there
+    } else if (before?.scene !== film.scene && index !== 0) {
       // The frames come in their own order: one coarse picture of where the stage stands comes before them.
       this.stills.ask(still(film.request, this.angle, "draft"));
     }
@@ -189,10 +200,10 @@ export class Studio extends EventTarget {
   }
 
   async cancel() {
-    await this.#letGo(this.film);
-    if (this.film) this.film.lasted ??= (performance.now() - this.film.began) / 1000;
     this.#following.abort();
+    const gone = this.#letGo(this.film);
     this.changed();
+    await gone;
   }
 
   fail(error) {
@@ -282,9 +293,11 @@ export class Studio extends EventTarget {
   #exact(angle) {
     const film = this.film;
     if (!film) return undefined;
-    const own = at(film, angle);
     return (
-      own ?? this.stills.picture(still(film.request, angle)) ?? at(this.under, angle) ?? this.stills.picture(still(film.request, angle, "draft"))
+      at(film, angle) ??
+      this.stills.picture(still(film.request, angle)) ??
+      at(this.under, angle) ??
+      this.stills.anyOf(film.scene, normalise(angle))
     );
   }
 

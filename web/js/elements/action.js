@@ -1,7 +1,6 @@
 // Render and cancel, and how far it is.
 
 import { html, nothing } from "../../vendor/lit.js";
-import { ended } from "../follow.js";
 import { Piece } from "./piece.js";
 
 export class Action extends Piece {
@@ -28,7 +27,7 @@ export class Action extends Piece {
     const done = film.loaded;
     const all = film.count;
     const values = { done, all, quality: this.say(`choice.quality.${film.request.quality}`) };
-    switch (film.job.status) {
+    switch (film.status) {
       case "accepted":
         return this.say("progress.accepted");
       case "running": {
@@ -47,8 +46,8 @@ export class Action extends Piece {
   /** What a listener is told: the beginning, the quarters, the end; not every frame. */
   #spoken(words) {
     const { film, asking } = this.studio;
-    const quarter = film && !ended(film.job) ? Math.floor(film.job.progress.fraction * 4) : "end";
-    const now = `${asking}/${film?.job.id}/${film?.job.status}/${quarter}/${this.speech.language}`;
+    const quarter = film && film.status === "running" ? Math.floor(film.job.progress.fraction * 4) : "end";
+    const now = `${asking}/${film?.job.id}/${film?.status}/${quarter}/${this.speech.language}`;
     if (now !== this.#moment) {
       this.#moment = now;
       this.#said = words;
@@ -68,7 +67,7 @@ export class Action extends Piece {
         <button type="button" class="cancel" ?disabled=${!running} @click=${() => studio.cancel()}>${this.say("action.cancel")}</button>
       </div>
       <progress max="1" .value=${studio.asking ? 0 : share} aria-label=${this.say("progress.title")}></progress>
-      <p class="words" data-status=${film?.job.status ?? "none"}>${words}</p>
+      <p class="words" data-status=${studio.asking ? "asking" : (film?.status ?? "none")}>${words}</p>
       <p class="words estimate">
         ${estimate
           ? html`${this.say(`choice.quality.${estimate.quality}`)}${estimate.error === null ? nothing : html` · <abbr title=${this.say("estimate.help")}>${this.say("estimate.error", { error: this.speech.number(estimate.error, 3, 4) })}</abbr>`}`

@@ -24,8 +24,8 @@ export class Caption extends Piece {
       mineral: name,
       no: this.#n(scene.n_o),
       ne: this.#n(scene.n_e),
-      tilt: this.angle(tilt, 1),
-      walkoff: this.angle(degrees, 1),
+      tilt: this.angle(tilt, 0, 2),
+      walkoff: this.angle(degrees, 1, 1),
       thick: this.speech.number(thick, 0, 2),
       shift: this.speech.number(shift, 2),
     };

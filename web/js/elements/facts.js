@@ -1,4 +1,4 @@
-// The chosen mineral in one line: formula, system, optical class.
+// The chosen mineral in one line: formula, system, optical class and sign.
 
 import { html, nothing } from "../../vendor/lit.js";
 import { Piece } from "./piece.js";
@@ -16,13 +16,17 @@ export class Facts extends Piece {
     return this.speech.has(key) ? this.say(key) : name;
   }
 
+  #sign(mineral) {
+    return mineral.optic_sign ? this.#phrase("sign", mineral.optic_sign) : null;
+  }
+
   render() {
     const mineral = this.studio.minerals.find((m) => m.id === this.studio.values.mineral);
     if (!mineral) return nothing;
     const parts = [
       mineral.formula ? formulaText(mineral.formula) : null,
       mineral.system ? this.#phrase("system", mineral.system) : null,
-      mineral.optical_class ? this.#phrase("optical", mineral.optical_class) : null,
+      mineral.optical_class ? [this.#phrase("optical", mineral.optical_class), this.#sign(mineral)].filter(Boolean).join(" ") : null,
     ];
     return html`<p class="facts">${parts.filter(Boolean).join(" · ")}</p>`;
   }

@@ -37,7 +37,7 @@ export class Piece extends LitElement {
   }
 
   /** An angle as this language writes it, with its sign: 7.5°. */
-  angle(degrees, places) {
-    return `${this.speech.number(degrees, places, 4)}°`;
+  angle(degrees, least = 0, most = 4) {
+    return `${this.speech.number(degrees, least, most)}°`;
   }
 }

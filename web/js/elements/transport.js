@@ -57,7 +57,8 @@ export class Transport extends Piece {
 
   #dial() {
     const { studio } = this;
-    const axis = studio.scene?.optic_axis;
+    const mineral = studio.minerals.find((m) => m.id === studio.film?.request.parameters.mineral);
+    const axis = mineral?.optical_class === "isotropic" ? null : studio.scene?.optic_axis;
     const tilted = axis && Math.hypot(axis[0], axis[1]) > 1e-6;
     const face = stageFace({
       degrees: studio.angle,
