@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import ipaddress
 import os
 import signal
 import socket
 import sys
+import threading
+from collections.abc import Iterator
 from types import FrameType
 
 import uvicorn
@@ -72,6 +75,11 @@ def run(host: str, port: int, settings: Settings) -> None:
         Code 1 if the port is taken, 130 after Ctrl-C.
     """
     set_up_logging(settings)
+    with _sigterm_ends():
+        _run(host, port, settings)
+
+
+def _run(host: str, port: int, settings: Settings) -> None:
     listener = _listen(host, port)
     try:
         if not _is_loopback(listener):
@@ -95,6 +103,19 @@ def run(host: str, port: int, settings: Settings) -> None:
         listener.close()
     if server.stopped_by == signal.SIGINT:
         raise SystemExit(130)
+
+
+@contextlib.contextmanager
+def _sigterm_ends() -> Iterator[None]:
+    """Let SIGTERM end the program in order also while the server does not (yet) look after the signals."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _listen(host: str, port: int) -> socket.socket:

@@ -119,4 +119,9 @@ class Workshop:
 
     def _dask_engine(self) -> Engine:
         settings = self.settings
-        return DaskEngine(settings.workers, niceness=settings.worker_niceness, scratch=settings.data_dir / "scratch")
+        return DaskEngine(
+            settings.workers,
+            niceness=settings.worker_niceness,
+            scratch=settings.data_dir / "scratch",
+            preload=("crystal_core.sequence",),
+        )

@@ -173,6 +173,15 @@ def test_units_beside_one_that_kills_are_not_blamed(tmp_path: Path) -> None:
         assert [future.result(60) for future in beside] == [1, 2, 3, 4]
 
 
+def test_dask_leaves_no_file_and_has_its_modules_at_hand(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with DaskEngine(1, preload=("xml.dom.pulldom",)) as engine:
+        assert engine.submit(engine_units.has_imported, "xml.dom.pulldom", key="modules").result(20)
+        assert not engine.submit(engine_units.has_imported, "xml.sax.saxutils.nothing", key="modules").result(20)
+        assert [path.name.split("-")[0] for path in tmp_path.iterdir()] == ["isogyre"]
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_dask_leaves_nothing_on_stderr() -> None:
     code = (
         "import engine_units\n"

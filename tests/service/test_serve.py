@@ -149,7 +149,8 @@ def test_ctrl_c_ends_it_with_130(service: Service) -> None:
     service.assert_no_orphans()
 
 
-def test_ctrl_c_while_it_starts_ends_it_too(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("number", "expected"), [(signal.SIGINT, 130), (signal.SIGTERM, 0)])
+def test_signals_while_it_starts_end_it_too(tmp_path: Path, number: int, expected: int) -> None:
     environment = {**os.environ, "ISOGYRE_DATA_DIR": str(tmp_path / "data"), "PYTHONPATH": str(HERE)}
     process = subprocess.Popen(
         [sys.executable, str(HERE / "serve_fake.py"), "127.0.0.1", "0"],
@@ -159,9 +160,9 @@ def test_ctrl_c_while_it_starts_ends_it_too(tmp_path: Path) -> None:
         env=environment,
     )
     wait_until((tmp_path / "data" / "lock").exists)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     out, err = process.communicate(timeout=20)
-    assert process.returncode == 130
+    assert process.returncode == expected
     assert (out, "Traceback" in err) == ("", False)
     assert not [
         p
