@@ -119,20 +119,34 @@ class ConvexPolyhedron:
         Returns
         -------
         distance : Real
-            In units of \\|direction\\|, ≥ 0, shape (N,).
+            In units of the direction's length, ≥ 0, shape (N,).
         face : NDArray
             Index of the exit face, shape (N,).
         """
         nearest = np.full(point.shape[1], np.inf)
         face = np.zeros(point.shape[1], np.intp)
-        for index, (n, offset) in enumerate(zip(self.normals, self.offsets, strict=True)):
+        for index, other in self._slabs:
+            n = self.normals[index]
             speed = n[0] * direction[0] + n[1] * direction[1] + n[2] * direction[2]
-            gap = offset - (n[0] * point[0] + n[1] * point[1] + n[2] * point[2])
-            distance = np.where(speed > 0.0, gap, np.inf) / np.where(speed > 0.0, speed, 1.0)
+            height = n[0] * point[0] + n[1] * point[1] + n[2] * point[2]
+            ahead = speed > 0.0
+            if other >= 0:  # of two parallel faces a ray can only meet the one it moves towards
+                wall = np.where(ahead, self.offsets[index], -self.offsets[other])
+                found = np.where(ahead, index, other)
+                usable = speed != 0.0
+            else:
+                wall, found, usable = self.offsets[index], index, ahead
+            distance = np.divide(wall - height, speed, out=np.full(speed.shape, np.inf), where=usable)
             nearer = distance < nearest
             np.copyto(nearest, distance, where=nearer)
-            face[nearer] = index
+            np.copyto(face, found, where=nearer)
         return np.maximum(nearest, 0.0), face
+
+    @cached_property
+    def _slabs(self) -> tuple[tuple[int, int], ...]:
+        """Return each face with the one parallel to it, or −1; each pair once."""
+        pairs = enumerate(int(other) for other in self.parallel_face)
+        return tuple((index, other) for index, other in pairs if other < 0 or index < other)
 
     def span(self, point: Real, direction: Real) -> tuple[Real, Real, NDArray[np.intp], NDArray[np.intp]]:
         """Return where straight lines enter and leave the body.
@@ -145,7 +159,7 @@ class ConvexPolyhedron:
         Returns
         -------
         enters, leaves : Real
-            Distances in units of \\|direction\\|, shape (N,); the line misses the body where enters ≥ leaves.
+            Distances in units of the direction's length, shape (N,); the line misses the body where enters ≥ leaves.
         entry_face, exit_face : NDArray
             Face indices, shape (N,).
         """

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crystal_core.optics.arrays import Field, Real, dot
+from crystal_core.optics.arrays import Field, Rays, Real, dot
 from crystal_core.optics.frames import transverse_frame
 
 __all__ = ["Coherency"]
@@ -81,6 +81,6 @@ class Coherency:
             + 2.0 * (cross.real * self.xy_re - cross.imag * self.xy_im)
         )
 
-    def take(self, rays: np.ndarray) -> Coherency:
+    def take(self, rays: Rays) -> Coherency:
         """Return the matrices of a selection of rays."""
         return Coherency(self.xx[rays], self.yy[rays], self.xy_re[rays], self.xy_im[rays])

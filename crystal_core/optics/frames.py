@@ -7,7 +7,7 @@ from typing import overload
 
 import numpy as np
 
-from crystal_core.optics.arrays import Field, Real, dot
+from crystal_core.optics.arrays import Field, Rays, Real, columns, dot
 
 __all__ = ["InterfaceFrame", "interface_frame", "transverse_frame"]
 
@@ -48,9 +48,9 @@ class InterfaceFrame:
         """Return the world vectors, shape (3, N), of components along x, y, z."""
         return self.x * vx + self.y * vy + self.z * vz
 
-    def take(self, rays: np.ndarray) -> InterfaceFrame:
+    def take(self, rays: Rays) -> InterfaceFrame:
         """Return the frames of a selection of rays."""
-        return InterfaceFrame(self.x[:, rays], self.y[:, rays], self.z[:, rays], self.kappa[rays])
+        return InterfaceFrame(columns(self.x, rays), columns(self.y, rays), columns(self.z, rays), self.kappa[rays])
 
 
 def interface_frame(normal: Real, tangential_k: Real) -> InterfaceFrame:

@@ -25,9 +25,9 @@ from crystal_core.errors import InputError
 from crystal_core.optics.arrays import BoolArray, Field, Real, dot
 from crystal_core.optics.frames import InterfaceFrame, interface_frame
 from crystal_core.optics.medium import UNIT_TOLERANCE, Medium
-from crystal_core.optics.modes import Mode, Wave, bilinear, mode_pair, propagating
+from crystal_core.optics.modes import FramedMedium, Mode, Wave, bilinear
 
-__all__ = ["Face", "Scattering", "scatter", "solve_face", "split_by_propagation"]
+__all__ = ["Face", "Scattering", "scatter", "solve_face"]
 
 GRAZING = 1e-9
 """|g(ψ, ψ)|/|ψ|² below which a reflected wave counts as grazing: the division would cost half the digits."""
@@ -72,31 +72,24 @@ class Face:
         return projected / wave.norm()
 
 
-def solve_face(frame: InterfaceFrame, source: Medium, target: Medium, evanescent: bool) -> Face:
+def solve_face(
+    source: FramedMedium, target: FramedMedium, source_evanescent: bool, target_evanescent: bool
+) -> Face:
     """Return the waves at each ray's face; amplitudes follow on demand.
 
     Parameters
     ----------
-    frame : InterfaceFrame
-        Plane of incidence; its z points from `source` into `target`.
-    source, target : Medium
-        The media on both sides.
-    evanescent : bool
-        Whether any wave of the batch may be evanescent; see `split_by_propagation`.
+    source, target : FramedMedium
+        The media on both sides, in the same frame, whose z points from `source` into `target`.
+    source_evanescent, target_evanescent : bool
+        Whether a wave of that medium may be evanescent in this batch; see `FramedMedium.pair`.
     """
     return Face(
-        frame,
-        mode_pair(source, frame, +1, evanescent),
-        mode_pair(source, frame, -1, evanescent),
-        mode_pair(target, frame, +1, evanescent),
+        source.frame,
+        source.pair(+1, source_evanescent),
+        source.pair(-1, source_evanescent),
+        target.pair(+1, target_evanescent),
     )
-
-
-def split_by_propagation(frame: InterfaceFrame, source: Medium, target: Medium) -> BoolArray:
-    """Return which rays have only propagating waves on both sides, shape (N,): those need no complex numbers."""
-    a, b = propagating(source, frame)
-    c, d = propagating(target, frame)
-    return a & b & c & d
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,9 +140,9 @@ def scatter(normal: ArrayLike, tangential_k: ArrayLike, source: Medium, target: 
     """
     z, kt = _checked(normal, tangential_k)
     frame = interface_frame(z, kt)
-    real = split_by_propagation(frame, source, target)
-    face = solve_face(frame, source, target, evanescent=not bool(real.all()))
-    incoming, outgoing = propagating(source, frame), propagating(target, frame)
+    here, there = FramedMedium(source, frame), FramedMedium(target, frame)
+    incoming, outgoing = here.propagating(), there.propagating()
+    face = solve_face(here, there, not (incoming[0] & incoming[1]).all(), not (outgoing[0] & outgoing[1]).all())
 
     names = {True: ("s", "p"), False: ("ordinary", "extraordinary")}
     sides = (

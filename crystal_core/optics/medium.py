@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crystal_core.errors import InputError, NotSupportedError
-from crystal_core.optics.arrays import Real
+from crystal_core.optics.arrays import Rays, Real, columns
 
-__all__ = ["Medium"]
+__all__ = ["Medium", "take"]
 
 UNIT_TOLERANCE = 1e-9
 """How far |axis| may stand from 1: far above rounding, far below any direction known by measurement."""
@@ -92,16 +92,17 @@ class Medium:
         """Whether the medium has one index in all directions."""
         return len(self.indices) == 1
 
-    def take(self, rays: Real | slice | np.ndarray) -> Medium:
-        """Return the medium of a selection of rays (an index or boolean array, or a slice)."""
+    def take(self, rays: Rays) -> Medium:
+        """Return the medium of a selection of rays (an index array or a slice)."""
         return Medium(
-            tuple(_take(n, rays) for n in self.indices),
-            self.axis if self.axis is None or self.axis.ndim == 1 else self.axis[:, rays],
-            None if self.absorption_per_mm is None else tuple(_take(a, rays) for a in self.absorption_per_mm),
+            tuple(take(n, rays) for n in self.indices),
+            self.axis if self.axis is None or self.axis.ndim == 1 else columns(self.axis, rays),
+            None if self.absorption_per_mm is None else tuple(take(a, rays) for a in self.absorption_per_mm),
         )
 
 
-def _take(values: Real, rays: Real | slice | np.ndarray) -> Real:
+def take(values: Real, rays: Rays) -> Real:
+    """Return the values of a selection of rays; one value for all, shape (), stays one."""
     return values if values.ndim == 0 else values[rays]
 
 

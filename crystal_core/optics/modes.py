@@ -17,11 +17,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crystal_core.optics.arrays import BoolArray, Complex, Field, Real
+from crystal_core.optics.arrays import BoolArray, Complex, Field, Rays, Real
 from crystal_core.optics.frames import InterfaceFrame
-from crystal_core.optics.medium import Medium
+from crystal_core.optics.medium import Medium, take
 
-__all__ = ["Mode", "Wave", "mode_pair", "propagating"]
+__all__ = ["FramedMedium", "Mode", "Wave", "bilinear"]
 
 ON_AXIS = 1e-28
 """|k × c|²/ε_o below which a wave counts as travelling along the optic axis (an angle of 1e-14: rounding)."""
@@ -125,23 +125,8 @@ def bilinear(a: Mode, b: Mode) -> Field:
     return 2.0 * total if a is b else total
 
 
-def propagating(medium: Medium, frame: InterfaceFrame) -> tuple[BoolArray, BoolArray]:
-    """Return, for each of the medium's two modes, whether it propagates, shape (N,) each.
-
-    A wave exactly at its limit (q real, no flux along the normal) counts as propagating.
-    """
-    kappa2 = frame.kappa**2
-    if medium.is_isotropic:
-        free = medium.indices[0] ** 2 - kappa2 >= 0
-        return free, free
-    assert medium.axis is not None
-    cx, _, cz = frame.components(_columns(medium.axis))
-    _, _, discriminant = _extraordinary_quadratic(medium, frame.kappa, cx, cz)
-    return medium.indices[0] ** 2 - kappa2 >= 0, discriminant >= 0
-
-
-def mode_pair(medium: Medium, frame: InterfaceFrame, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
-    """Return the two waves whose energy goes along sign·normal (evanescent ones: that decay along it).
+class FramedMedium:
+    """A medium in the frame of an interface: what its four waves have in common.
 
     Parameters
     ----------
@@ -149,94 +134,123 @@ def mode_pair(medium: Medium, frame: InterfaceFrame, sign: int, evanescent: bool
         Isotropic (modes s, p) or uniaxial (ordinary, extraordinary).
     frame : InterfaceFrame
         Plane of incidence of each ray.
-    sign : int
-        +1 or −1.
-    evanescent : bool
-        Whether a wave of this batch may be evanescent: then all arithmetic is complex. With False, every q² must be
-        ≥ 0 (see `propagating`).
     """
-    if medium.is_isotropic:
-        return _isotropic_pair(medium, frame, sign, evanescent)
-    return _uniaxial_pair(medium, frame, sign, evanescent)
 
+    def __init__(self, medium: Medium, frame: InterfaceFrame) -> None:
+        self.medium = medium
+        self.frame = frame
+        kappa = frame.kappa
+        self._eps_o = medium.indices[0] ** 2
+        self._q2_o = self._eps_o - kappa * kappa
+        if medium.axis is None:
+            return
+        cx, cy, cz = self._c = frame.components(_columns(medium.axis))
+        self._eps_e = medium.indices[1] ** 2
+        self._difference = self._eps_e - self._eps_o
+        # a q² + 2 b q + c = 0 is k·ε·k = ε_o ε_e for k = (κ, 0, q). The ray's normal component is a q + b =
+        # ± √(b² − a c): the root's sign is the sign of the energy flow.
+        self._a = self._eps_o + self._difference * cz * cz
+        self._b = self._difference * kappa * cx * cz
+        # b² − a c with the terms of fourth order in the axis cancelled by hand.
+        self._discriminant = self._eps_o * (
+            self._eps_e * self._a - kappa * kappa * (self._eps_o + self._difference * (cx * cx + cz * cz))
+        )
 
-def _isotropic_pair(medium: Medium, frame: InterfaceFrame, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
-    n = medium.indices[0]
-    q = sign * _root(n * n - frame.kappa**2, evanescent)
-    ones = np.ones(q.shape)
-    ray = (frame.kappa, None, q)
-    s = Mode(q, None, ones, None, -q, None, ray)
-    p = Mode(q, q / n, None, -frame.kappa / n, None, n * ones, ray)
-    return s, p
+    def take(self, rays: Rays) -> FramedMedium:
+        """Return the same for a selection of rays."""
+        part = object.__new__(FramedMedium)
+        part.medium = self.medium.take(rays)
+        part.frame = self.frame.take(rays)
+        part._eps_o = take(self._eps_o, rays)
+        part._q2_o = self._q2_o[rays]
+        if not self.medium.is_isotropic:
+            part._c = (self._c[0][rays], self._c[1][rays], self._c[2][rays])
+            part._eps_e = take(self._eps_e, rays)
+            part._difference = take(self._difference, rays)
+            part._a, part._b = self._a[rays], self._b[rays]
+            part._discriminant = self._discriminant[rays]
+        return part
 
+    def propagating(self) -> tuple[BoolArray, BoolArray]:
+        """Return, for each of the two modes, whether it propagates, shape (N,) each.
 
-def _uniaxial_pair(medium: Medium, frame: InterfaceFrame, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
-    assert medium.axis is not None
-    kappa = frame.kappa
-    cx, cy, cz = frame.components(_columns(medium.axis))
-    eps_o = medium.indices[0] ** 2
-    eps_e = medium.indices[1] ** 2
-    difference = eps_e - eps_o
+        A wave exactly at its limit (no flux along the normal) counts as propagating.
+        """
+        first = self._q2_o >= 0
+        return first, first if self.medium.is_isotropic else self._discriminant >= 0
 
-    q_o = sign * _root(eps_o - kappa * kappa, evanescent)
-    mx: Field = -q_o * cy
-    my: Field = q_o * cx - kappa * cz
-    mz: Field = kappa * cy
-    m2: Field = mx * mx + my * my + mz * mz
+    def pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
+        """Return the two waves whose energy goes along sign·normal (evanescent ones: that decay along it).
 
-    a, b, discriminant = _extraordinary_quadratic(medium, kappa, cx, cz)
-    root = sign * _root(discriminant, evanescent)
-    # q_e = (root − b)/a, written as its difference from q_o (which solves k·ε·k − ε_o ε_e = −difference·|m|²): near
-    # the axis the difference of two nearly equal roots would lose every digit.
-    slope = a * q_o + b + root
-    straight = np.flatnonzero((np.abs(slope) < np.abs(root)) | (slope == 0))
-    if straight.size:
-        slope[straight] = 1.0
-    shift = difference * m2 / slope
-    if straight.size:  # opposite signs: here the plain difference is the one that keeps its digits
-        shift[straight] = ((root - b) / a - q_o)[straight]
-    q_e = q_o + shift
+        Parameters
+        ----------
+        sign : int
+            +1 or −1.
+        evanescent : bool
+            Whether a wave of this batch may be evanescent: then the arithmetic is complex. With False every wave must
+            propagate (see `propagating`).
+        """
+        if self.medium.is_isotropic:
+            return self._isotropic_pair(sign, evanescent)
+        return self._uniaxial_pair(sign, evanescent)
 
-    # A complex m can have m·m = 0 without vanishing, hence the conjugate.
-    on_axis = (m2 if not evanescent else _squared_length(mx, my, mz)) <= ON_AXIS * eps_o
-    nx: Field = mx - shift * cy
-    ny: Field = my + shift * cx
-    m2_e: Field = nx * nx + ny * ny + mz * mz
-    nz = mz
-    if on_axis.any():
-        mx, my, mz = (np.where(on_axis, value, m) for value, m in ((0.0, mx), (1.0, my), (0.0, mz)))
-        nx, ny, nz = (np.where(on_axis, value, m) for value, m in ((0.0, nx), (1.0, ny), (0.0, nz)))
-        m2_e = np.where(on_axis, 0.0, m2_e)
+    def _isotropic_pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
+        n = self.medium.indices[0]
+        kappa = self.frame.kappa
+        q = sign * _root(self._q2_o, evanescent)
+        ray = (kappa, None, q)
+        s = Mode(q, None, np.ones(q.shape), None, -q, None, ray)
+        p = Mode(q, q / n, None, -kappa / n, None, np.broadcast_to(n, q.shape), ray)
+        return s, p
 
-    ordinary = Mode(q_o, mx, my, mz, -q_o * my, q_o * mx - kappa * mz, (kappa, None, q_o))
-    along_c = m2_e * (1.0 / eps_e - 1.0 / eps_o)
-    inverse = 1.0 / eps_o
-    stretch = difference * (kappa * cx + q_e * cz)
-    extraordinary = Mode(
-        q_e,
-        q_e * ny * inverse + along_c * cx,
-        (kappa * nz - q_e * nx) * inverse + along_c * cy,
-        -kappa * ny * inverse + along_c * cz,
-        nx,
-        ny,
-        (eps_o * kappa + stretch * cx, stretch * cy, eps_o * q_e + stretch * cz),
-    )
-    return ordinary, extraordinary
+    def _uniaxial_pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
+        kappa = self.frame.kappa
+        cx, cy, cz = self._c
+        eps_o = self._eps_o
 
+        q_o = sign * _root(self._q2_o, evanescent)
+        mx: Field = -q_o * cy
+        my: Field = q_o * cx - kappa * cz
+        mz: Field = kappa * cy
+        m2: Field = mx * mx + my * my + mz * mz
 
-def _extraordinary_quadratic(medium: Medium, kappa: Real, cx: Real, cz: Real) -> tuple[Real, Real, Real]:
-    """Return a, b and b² − a·c of a q² + 2 b q + c = 0, which is k·ε·k = ε_o ε_e for k = (κ, 0, q).
+        # q_e = (root − b)/a, written as its difference from q_o, which solves k·ε·k − ε_o ε_e = −difference·|m|²: near
+        # the optic axis the plain difference of two nearly equal roots would lose every digit.
+        root = sign * _root(self._discriminant, evanescent)
+        slope = self._a * q_o + self._b + root
+        straight = np.flatnonzero((np.abs(slope) < np.abs(root)) | (slope == 0))
+        if straight.size:
+            slope[straight] = 1.0
+        shift = self._difference * m2 / slope
+        if straight.size:  # opposite signs: here the plain difference is the one that keeps its digits
+            shift[straight] = ((root - self._b) / self._a - q_o)[straight]
+        q_e = q_o + shift
 
-    The ray's normal component is a q + b = ± √(b² − a c): the root's sign is the sign of the energy flow.
-    """
-    eps_o = medium.indices[0] ** 2
-    eps_e = medium.indices[1] ** 2
-    difference = eps_e - eps_o
-    a = eps_o + difference * cz * cz
-    b = difference * kappa * cx * cz
-    # b² − a c with the terms of fourth order in c cancelled by hand: κ² ε_o (ε_o + d(cx² + cz²)) is what is left.
-    discriminant = eps_o * (eps_e * a - kappa * kappa * (eps_o + difference * (cx * cx + cz * cz)))
-    return a, b, discriminant
+        nx: Field = mx - shift * cy
+        ny: Field = my + shift * cx
+        nz = mz
+        m2_e: Field = nx * nx + ny * ny + nz * nz
+        # A complex m can have m·m = 0 without vanishing, hence the conjugate.
+        on_axis = (m2 if not evanescent else _squared_length(mx, my, mz)) <= ON_AXIS * eps_o
+        if on_axis.any():
+            mx, my, mz = (np.where(on_axis, value, m) for value, m in ((0.0, mx), (1.0, my), (0.0, mz)))
+            nx, ny, nz = (np.where(on_axis, value, m) for value, m in ((0.0, nx), (1.0, ny), (0.0, nz)))
+            m2_e = np.where(on_axis, 0.0, m2_e)
+
+        ordinary = Mode(q_o, mx, my, mz, -q_o * my, q_o * mx - kappa * mz, (kappa, None, q_o))
+        inverse = 1.0 / eps_o
+        along_c = m2_e * (1.0 / self._eps_e - inverse)
+        stretch = self._difference * (kappa * cx + q_e * cz)
+        extraordinary = Mode(
+            q_e,
+            q_e * ny * inverse + along_c * cx,
+            (kappa * nz - q_e * nx) * inverse + along_c * cy,
+            -kappa * ny * inverse + along_c * cz,
+            nx,
+            ny,
+            (eps_o * kappa + stretch * cx, stretch * cy, eps_o * q_e + stretch * cz),
+        )
+        return ordinary, extraordinary
 
 
 def _squared_length(x: Field, y: Field, z: Field) -> Real:
@@ -245,10 +259,13 @@ def _squared_length(x: Field, y: Field, z: Field) -> Real:
 
 
 def _root(square: Real, evanescent: bool) -> Field:
+    """Return √square, with Im ≥ 0 where it is negative: a wave along +normal decays with it."""
     if not evanescent:
         return np.sqrt(square)
-    # Im ≥ 0: a wave along +normal decays with it.
-    return np.sqrt(square.astype(np.complex128))
+    root = np.empty(square.shape, np.complex128)
+    root.real = np.sqrt(np.maximum(square, 0.0))
+    root.imag = np.sqrt(np.maximum(-square, 0.0))
+    return root
 
 
 def _columns(axis: Real) -> Real:

@@ -59,7 +59,7 @@ class Page(Part):
 class PointLight(Part):
     """A point source of daylight (D65), unpolarized, the same in all directions."""
 
-    position_mm: Point = (-130.0, 170.0, 330.0)
+    position_mm: Point = (-90.0, 130.0, 380.0)
 
 
 class Sky(Part):

@@ -110,26 +110,18 @@ class Texture:
         """1 for a grey texture, 3 for linear sRGB."""
         return self.texels.shape[2]
 
-    def average(self, x: Real, y: Real, width_mm: Real) -> Real:
+    def average(self, x: Real, y: Real, width_mm: float) -> Real:
         """Return the mean reflectance over axis-parallel squares, shape (channels, N); points outside take the rim's.
 
         Parameters
         ----------
         x, y : Real
             Centres on the page, in mm, shape (N,).
-        width_mm : Real
-            Sides of the squares, shape (N,).
+        width_mm : float
+            Side of the squares; rounded to a quarter octave of texels.
         """
-        level = np.rint(LEVELS_PER_OCTAVE * np.log2(np.maximum(width_mm / self.texel_mm, 1.0))).astype(np.int64)
-        lowest, highest = (int(level.min()), int(level.max())) if level.size else (0, 0)
-        if lowest == highest:
-            return self._sample(x, y, lowest)
-        result = np.empty((self.channels, x.size))
-        for value in range(lowest, highest + 1):
-            chosen = np.flatnonzero(level == value)
-            if chosen.size:
-                result[:, chosen] = self._sample(x[chosen], y[chosen], value)
-        return result
+        level = round(LEVELS_PER_OCTAVE * np.log2(max(width_mm / self.texel_mm, 1.0)))
+        return self._sample(x, y, level)
 
     def _sample(self, x: Real, y: Real, level: int) -> Real:
         """Interpolate bilinearly in one prefiltered level."""

@@ -1,0 +1,100 @@
+"""What a backward ray in air sees that meets no crystal: the page, the table around it, the sky."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crystal_core.optics.arrays import columns
+from crystal_core.render.illumination import Illumination
+from crystal_core.scene import StagedScene
+from crystal_core.spectra.reflectance import basis
+
+__all__ = ["Surroundings"]
+
+Real = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+class Surroundings:
+    """Radiance, relative to D65 and times the exposure, along rays in air.
+
+    Parameters
+    ----------
+    scene : StagedScene
+        The scene.
+    wavelength_nm : Real
+        The wavelengths of a level's passes, shape (K,).
+    footprint_mm : float
+        Side of the square of the page that a sample stands for.
+    """
+
+    def __init__(
+        self, scene: StagedScene, illumination: Illumination, wavelength_nm: Real, footprint_mm: float
+    ) -> None:
+        self._scene = scene
+        self._illumination = illumination
+        self._basis = basis(wavelength_nm)
+        self._footprint_mm = footprint_mm
+        self._half_width = 0.5 * scene.page.texture.width_mm
+        self._half_height = 0.5 * scene.page.texture.height_mm
+        self.sky = scene.sky_fraction * scene.exposure
+
+    def radiance(self, point: Real, direction: Real, colour: Index) -> Real:
+        """Return the radiance each ray sees, shape (N,).
+
+        Parameters
+        ----------
+        point, direction : Real
+            Rays in air above the page, shape (3, N).
+        colour : Index
+            Wavelength of each ray: its place among them, shape (N,).
+        """
+        result = np.full(colour.size, self.sky)
+        down = np.flatnonzero(direction[2] < 0.0)
+        if down.size:
+            reflectance, light, sheet = self._page(columns(point, down), columns(direction, down))
+            if reflectance.shape[0] == 1:
+                value = reflectance[0]
+            else:
+                at = colour[down]
+                value = reflectance[0] * self._basis[0][at]
+                value += reflectance[1] * self._basis[1][at]
+                value += reflectance[2] * self._basis[2][at]
+            result[down] = np.where(sheet, value, self._scene.page.table_reflectance) * light
+        return result
+
+    def linear_srgb(self, point: Real, direction: Real, weights: Real, first: int) -> Real:
+        """Return the colour each ray sees when it carries all wavelengths of the pass, shape (3, N).
+
+        Parameters
+        ----------
+        point, direction : Real
+            Rays in air above the page, shape (3, N).
+        weights : Real
+            Linear sRGB of each wavelength (`WavelengthSet.weights`), shape (K, 3).
+        first : int
+            Place of the pass's first wavelength among those of the level.
+        """
+        spectra = self._basis[:, first : first + weights.shape[0]]
+        result = np.full((3, point.shape[1]), self.sky)
+        down = np.flatnonzero(direction[2] < 0.0)
+        if down.size:
+            reflectance, light, sheet = self._page(columns(point, down), columns(direction, down))
+            for channel in range(3):
+                if reflectance.shape[0] == 1:
+                    value = reflectance[0]
+                else:
+                    share = np.sum(spectra * weights[:, channel], axis=1)
+                    value = reflectance[0] * share[0] + reflectance[1] * share[1] + reflectance[2] * share[2]
+                result[channel, down] = np.where(sheet, value, self._scene.page.table_reflectance) * light
+        return result
+
+    def _page(self, point: Real, direction: Real) -> tuple[Real, Real, NDArray[np.bool_]]:
+        """Return texture reflectance (channels, N), light times exposure, and whether the sheet was met."""
+        distance = point[2] / -direction[2]
+        x = point[0] + distance * direction[0]
+        y = point[1] + distance * direction[1]
+        reflectance = self._scene.page.texture.average(x, y, self._footprint_mm)
+        sheet = (np.abs(x) <= self._half_width) & (np.abs(y) <= self._half_height)
+        return reflectance, self._illumination.at(x, y) * self._scene.exposure, sheet

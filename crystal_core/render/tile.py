@@ -1,0 +1,222 @@
+"""The pixels of one tile: passes over all of them, then over those whose error is still too large."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crystal_core.optics import Coherency, Medium, transverse_frame
+from crystal_core.optics.arrays import columns, dot
+from crystal_core.render.illumination import Illumination
+from crystal_core.render.isotropic_events import IsotropicEvents
+from crystal_core.render.quality import Quality
+from crystal_core.render.rays import BATCH
+from crystal_core.render.sampling import Pass, passes, random_numbers
+from crystal_core.render.surroundings import Surroundings
+from crystal_core.render.tracer import Arrivals, Events, Roulette, Stopwatch, Tracer
+from crystal_core.render.uniaxial_events import UniaxialEvents
+from crystal_core.scene import StagedScene, StagedSpecimen
+
+__all__ = ["TilePixels", "render_pixels"]
+
+Real = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class TilePixels:
+    """What one tile came to.
+
+    Parameters
+    ----------
+    pixels : NDArray
+        Linear sRGB, shape (h, w, 3), float32.
+    squared_error : float
+        Sum over the pixels of the estimated squared error, the mean of the three channels.
+    stages : dict
+        Seconds per stage.
+    events : int
+        Rays that met a face of the specimen.
+    """
+
+    pixels: NDArray[np.float32]
+    squared_error: float
+    stages: dict[str, float]
+    events: int
+
+
+def render_pixels(
+    scene: StagedScene,
+    illumination: Illumination,
+    quality: Quality,
+    size: tuple[int, int],
+    box: tuple[int, int, int, int],
+    key: tuple[int, int, int],
+) -> TilePixels:
+    """Return the pixels of a tile; a function of its arguments alone, to the last bit.
+
+    Parameters
+    ----------
+    scene : StagedScene
+        At the frame's stage angle.
+    illumination : Illumination
+        Of that scene; the tiles of a frame share it.
+    quality : Quality
+        The sampling.
+    size : tuple of int
+        Width and height of the picture.
+    box : tuple of int
+        x0, y0, x1, y1 of the tile; (0, 0) is the picture's top left corner.
+    key : tuple of int
+        (seed, frame, tile): keys the random numbers.
+    """
+    x0, y0, x1, y1 = box
+    across = np.tile(np.arange(x0, x1, dtype=np.float64), y1 - y0)
+    down = np.repeat(np.arange(y0, y1, dtype=np.float64), x1 - x0)
+    count = across.size
+    watch = Stopwatch()
+    total, samples = np.zeros((3, count)), np.zeros(count)
+    error = np.zeros(count)
+    chosen = np.arange(count)
+    events = 0
+    for level, positions in enumerate(quality.positions):
+        random = random_numbers(*key, level)
+        halves, done = _Level(
+            scene, illumination, size, passes(positions, quality.wavelengths, key[0]), watch
+        ).render(across[chosen], down[chosen], Roulette(quality.roulette_below, random))
+        events += done
+        total[:, chosen] += halves[0] + halves[1]
+        samples[chosen] += positions
+        difference = (halves[0] - halves[1]) / positions  # half of the difference of the halves' means
+        error[chosen] = np.sqrt(np.mean(difference**2, axis=0))
+        chosen = np.flatnonzero(error > quality.refine_above)
+        watch.stop("film")
+        if not chosen.size:
+            break
+    pixels = np.ascontiguousarray((total / samples).T, np.float32).reshape(y1 - y0, x1 - x0, 3)
+    return TilePixels(pixels, float(np.sum(error**2)), watch.seconds, events)
+
+
+class _Level:
+    """The passes of one level over a set of pixels, traced together so that batches stay full."""
+
+    def __init__(
+        self,
+        scene: StagedScene,
+        illumination: Illumination,
+        size: tuple[int, int],
+        samples: tuple[Pass, ...],
+        watch: Stopwatch,
+    ) -> None:
+        self._scene = scene
+        self._size = size
+        self._samples = samples
+        self._watch = watch
+        self._wavelength_nm = np.concatenate([sample.wavelengths.wavelength_nm for sample in samples])
+        footprint_mm = samples[0].footprint * _pixel_on_page_mm(scene, size)
+        self._surroundings = Surroundings(scene, illumination, self._wavelength_nm, footprint_mm)
+
+    def render(self, across: Real, down: Real, roulette: Roulette) -> tuple[Real, int]:
+        """Return the sums of linear sRGB over the passes of each half, shape (2, 3, N), and the number of events."""
+        colours = self._wavelength_nm.size
+        tracer = Tracer(
+            _events(self._scene.specimen, self._wavelength_nm),
+            self._surroundings,
+            colours,
+            across.size * colours,
+            roulette,
+            self._watch,
+        )
+        halves = np.zeros((2, 3, across.size))
+        first = 0
+        for sample in self._samples:
+            self._watch.restart()
+            direction = _directions(self._scene, self._size, across + sample.x, down + sample.y)
+            importance = _importance(self._scene, direction)
+            eye = self._scene.camera.eye[:, None]
+            face = self._scene.specimen.finder.first_face(np.broadcast_to(eye, direction.shape), direction)
+            self._watch.stop("camera")
+            missed = np.flatnonzero(face < 0)
+            # A ray that meets no crystal sees all wavelengths along one path.
+            halves[sample.half][:, missed] += importance.intensity()[missed] * self._surroundings.linear_srgb(
+                np.broadcast_to(eye, (3, missed.size)), columns(direction, missed), sample.wavelengths.weights, first
+            )
+            self._watch.stop("page")
+            count = sample.wavelengths.wavelength_nm.size
+            met = np.flatnonzero(face >= 0)
+            step = max(1, BATCH // count)
+            for start in range(0, met.size, step):
+                pixels = met[start : start + step]
+                tracer.arrive(self._arrivals(pixels, direction, face, importance, first, count))
+            first += count
+        radiance = tracer.finish().reshape(across.size, colours)
+        self._watch.restart()
+        first = 0
+        for sample in self._samples:
+            for weights in sample.wavelengths.weights:
+                for channel in range(3):
+                    halves[sample.half][channel] += weights[channel] * radiance[:, first]
+                first += 1
+        return halves, tracer.events_done
+
+    def _arrivals(
+        self, pixels: Index, direction: Real, face: NDArray[np.int32], importance: Coherency, first: int, count: int
+    ) -> Arrivals:
+        """Return the rays of some pixels at the faces they meet, one for each of a pass's wavelengths."""
+        body, eye = self._scene.specimen.body, self._scene.camera.eye[:, None]
+        normal = columns(body.normals.T, face[pixels])
+        ahead = columns(direction, pixels)
+        distance = (body.offsets[face[pixels]] - dot(eye, normal)) / dot(ahead, normal)
+        colour = np.tile(np.arange(first, first + count), pixels.size)
+        ray = np.repeat(pixels, count)
+        return Arrivals(
+            np.repeat(eye + distance * ahead, count, axis=1),
+            columns(direction, ray),
+            face[ray].astype(np.intp),
+            importance.take(ray),
+            ray * self._wavelength_nm.size + colour,
+            colour,
+        )
+
+
+def _pixel_on_page_mm(scene: StagedScene, size: tuple[int, int]) -> float:
+    """Return the side of a pixel's square on the page at the centre of the picture, measured across the line of sight.
+
+    The same for all rays: plane faces keep angles, and where the true footprint is wider (a slanted page, a long way
+    inside), the narrower one costs noise, never sharpness.
+    """
+    camera = scene.camera
+    reach = camera.eye[2] / max(-camera.forward[2], 0.05)
+    return float(reach * 2.0 * camera.tan_half / size[1])
+
+
+def _directions(scene: StagedScene, size: tuple[int, int], x: Real, y: Real) -> Real:
+    """Return unit directions through points of the picture, in pixels from its top left corner, shape (3, N)."""
+    camera = scene.camera
+    width, height = size
+    across = camera.tan_half * (2.0 * x / width - 1.0) * (width / height)
+    upward = camera.tan_half * (1.0 - 2.0 * y / height)
+    direction = (
+        camera.forward[:, None] + camera.right[:, None] * across + camera.up[:, None] * upward
+    )
+    return np.asarray(direction / np.sqrt(dot(direction, direction)), np.float64)
+
+
+def _importance(scene: StagedScene, direction: Real) -> Coherency:
+    """Return what the camera measures, per unit of unpolarized radiance: trace 1, or ½ behind an analyser."""
+    if scene.camera.analyser is None:
+        return Coherency.unpolarized(np.ones(direction.shape[1]))
+    axis = scene.camera.analyser[:, None]
+    along = axis - dot(axis, direction) * direction
+    along = along / np.sqrt(dot(along, along))
+    x, y = transverse_frame(direction)
+    return Coherency.pure(dot(along, x), dot(along, y), np.full(direction.shape[1], 0.5))
+
+
+def _events(specimen: StagedSpecimen, wavelength_nm: Real) -> Events:
+    indices = specimen.indices(wavelength_nm)
+    if specimen.is_isotropic:
+        return IsotropicEvents(specimen, Medium.isotropic(indices[0]))
+    return UniaxialEvents(specimen, Medium.uniaxial(indices[0], indices[1], specimen.axis))

@@ -1,0 +1,231 @@
+"""The wavefront: backward rays into the specimen, from face to face, and out to the surroundings.
+
+A backward ray is traced as light that starts at the camera: the index surface is centrosymmetric, so the path is the
+same, and by reciprocity so are the powers. What it carries is the importance W as C = conj(W) (`optics.Coherency`);
+inside an anisotropic crystal, where the two modes are followed as rays of their own, one number per ray.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crystal_core.optics import Coherency, Medium
+from crystal_core.render.rays import BATCH, InsideRays, Pool
+from crystal_core.render.surroundings import Surroundings
+from crystal_core.scene import StagedSpecimen
+
+__all__ = ["AIR", "MAX_DEPTH", "Arrivals", "Events", "Roulette", "Stopwatch", "Tracer"]
+
+Real = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+AIR = Medium.isotropic(1.0)
+
+MAX_DEPTH = 32
+"""Faces after which a branch goes on only by roulette, however heavy it is: light trapped by total reflection."""
+
+SURVIVAL_BEYOND = 0.95
+"""Chance per face that a branch deeper than `MAX_DEPTH` goes on."""
+
+GROWTH = 2.0 ** np.arange(5)
+"""Factor on the roulette's threshold after 0, 1, 2, … faces."""
+
+
+@dataclass(slots=True)
+class Arrivals:
+    """Backward rays that meet the specimen from outside.
+
+    Parameters
+    ----------
+    point, direction : Real
+        On the face, mm, and unit, shape (3, N).
+    face : Index
+        Shape (N,).
+    importance : Coherency
+        In the transverse frame of `direction`.
+    lane, colour : Index
+        Pixel-and-wavelength, and place of the wavelength in the pass, shape (N,).
+    """
+
+    point: Real
+    direction: Real
+    face: Index
+    importance: Coherency
+    lane: Index
+    colour: Index
+
+
+@dataclass(slots=True)
+class Leaving:
+    """Backward rays that go out into air: importance is the trace, as nothing polarizing is left on their way."""
+
+    point: Real
+    direction: Real
+    importance: Real
+    lane: Index
+
+    @classmethod
+    def joined(cls, parts: list[Leaving]) -> Leaving:
+        """Return several as one."""
+        if len(parts) == 1:
+            return parts[0]
+        if not parts:
+            return cls(np.empty((3, 0)), np.empty((3, 0)), np.empty(0), np.empty(0, np.intp))
+        return cls(
+            np.concatenate([part.point for part in parts], axis=1),
+            np.concatenate([part.direction for part in parts], axis=1),
+            np.concatenate([part.importance for part in parts]),
+            np.concatenate([part.lane for part in parts]),
+        )
+
+
+@dataclass(slots=True)
+class Roulette:
+    """Ends light branches at random without bias.
+
+    Parameters
+    ----------
+    below : float
+        Importance under which a branch is put to the wheel at the first face; it doubles with each of the next
+        few faces (`GROWTH`): what is left after several of them is faint and spread out, and would cost most.
+    random : numpy.random.Generator
+        Its numbers.
+    """
+
+    below: float
+    random: np.random.Generator
+
+    def survivors(self, importance: Real, depth: NDArray[np.int16]) -> tuple[Index, Real]:
+        """Return which branches go on, and the factor that makes up for those that do not.
+
+        Parameters
+        ----------
+        importance : Real
+            Of the branches, shape (N,).
+        depth : NDArray
+            Faces met, shape (N,).
+        """
+        chance = importance / (self.below * GROWTH[np.minimum(depth, GROWTH.size - 1)])
+        deep = depth >= MAX_DEPTH
+        if deep.any():
+            chance = np.where(deep, np.minimum(chance, SURVIVAL_BEYOND), chance)
+        kept = np.flatnonzero(self.random.random(chance.size) < chance)
+        return kept, 1.0 / np.minimum(chance[kept], 1.0)
+
+
+@dataclass(slots=True)
+class Stopwatch:
+    """Seconds per stage."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+    _last: float = field(default_factory=perf_counter)
+
+    def restart(self) -> None:
+        """Begin a stage."""
+        self._last = perf_counter()
+
+    def stop(self, stage: str) -> None:
+        """Charge the time since the last call to `stage`, and begin the next."""
+        now = perf_counter()
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self._last
+        self._last = now
+
+
+class Events(Protocol):
+    """What happens at the faces of one kind of crystal."""
+
+    modes: int
+    """Number of kinds of rays inside, each with its pool."""
+
+    def enter(self, arrivals: Arrivals, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:
+        """Return the reflected rays and, per mode, the refracted ones."""
+        ...
+
+    def leave(self, rays: InsideRays, mode: int, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:
+        """Carry rays to the next face; return those that go out and, per mode, those reflected inside."""
+        ...
+
+
+class Tracer:
+    """Traces the arrivals of a level's passes together and adds up what they see.
+
+    Parameters
+    ----------
+    events : Events
+        Of the specimen's crystal at the wavelengths of the passes.
+    surroundings : Surroundings
+        At the same wavelengths.
+    colours : int
+        Number of wavelengths of all passes together; lane = pixel · colours + colour.
+    lanes : int
+        Number of lanes.
+    """
+
+    def __init__(
+        self, events: Events, surroundings: Surroundings, colours: int, lanes: int, roulette: Roulette, watch: Stopwatch
+    ) -> None:
+        self.events_done = 0
+        self._radiance = np.zeros(lanes)
+        self._seen: list[tuple[Index, Real]] = []
+        self._seen_count = 0
+        self._events = events
+        self._surroundings = surroundings
+        self._colours = colours
+        self._roulette = roulette
+        self._watch = watch
+        self._pools = tuple(Pool() for _ in range(events.modes))
+
+    def arrive(self, arrivals: Arrivals) -> None:
+        """Take rays in; call `finish` after the last."""
+        self._watch.restart()
+        leaving, inside = self._events.enter(arrivals, self._roulette)
+        self._settle(arrivals.lane.size, leaving, inside)
+        self._drain(BATCH)
+
+    def finish(self) -> Real:
+        """Trace what still waits; return the radiance of each lane."""
+        self._drain(1)
+        self._add_up()
+        return self._radiance
+
+    def _drain(self, least: int) -> None:
+        """Work while any pool holds `least` rays."""
+        while True:
+            mode = max(range(len(self._pools)), key=lambda m: len(self._pools[m]))
+            if len(self._pools[mode]) < least:
+                return
+            self._watch.restart()
+            rays = self._pools[mode].pop()
+            leaving, inside = self._events.leave(rays, mode, self._roulette)
+            self._settle(len(rays), leaving, inside)
+
+    def _settle(self, count: int, leaving: Leaving, inside: list[InsideRays]) -> None:
+        self._watch.stop("interfaces")
+        self.events_done += count
+        for pool, rays in zip(self._pools, inside, strict=True):
+            pool.push(rays)
+        colour = leaving.lane % self._colours
+        seen = leaving.importance * self._surroundings.radiance(leaving.point, leaving.direction, colour)
+        self._seen.append((leaving.lane, seen))
+        self._seen_count += seen.size
+        if self._seen_count > self._radiance.size:
+            self._add_up()
+        self._watch.stop("page")
+
+    def _add_up(self) -> None:
+        """Add what was seen to the lanes: seldom, as each time costs a walk over all of them."""
+        if self._seen:
+            lanes = np.concatenate([lane for lane, _ in self._seen])
+            values = np.concatenate([value for _, value in self._seen])
+            self._radiance += np.bincount(lanes, weights=values, minlength=self._radiance.size)
+        self._seen, self._seen_count = [], 0
+
+
+def face_normals(specimen: StagedSpecimen) -> Real:
+    """Return the outward normals as columns, shape (3, F), ready to be gathered per ray."""
+    return np.ascontiguousarray(specimen.body.normals.T)

@@ -1,0 +1,177 @@
+"""Faces of a uniaxial crystal in air: importance splits between two modes, each followed as a ray of its own.
+
+Ordinary and extraordinary rays part on their way, so beams add by intensity: their interference shows only in plates so
+thin that the two stay within a pixel's footprint, which this tracer does not treat as such.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crystal_core.optics import InterfaceFrame, Medium, absorption_along_ray, interface_frame
+from crystal_core.optics.arrays import columns, dot
+from crystal_core.optics.interface import Face, solve_face
+from crystal_core.optics.modes import FramedMedium, Mode
+from crystal_core.render.rays import InsideRays
+from crystal_core.render.tracer import AIR, Arrivals, Leaving, Roulette, face_normals
+from crystal_core.scene import StagedSpecimen
+
+__all__ = ["UniaxialEvents"]
+
+Real = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+class UniaxialEvents:
+    """`tracer.Events` of a uniaxial specimen; mode 0 is the ordinary one, mode 1 the extraordinary.
+
+    Parameters
+    ----------
+    specimen : StagedSpecimen
+        The crystal.
+    medium : Medium
+        Its medium with one index per wavelength of the pass, shape (K,).
+    """
+
+    modes = 2
+
+    def __init__(self, specimen: StagedSpecimen, medium: Medium) -> None:
+        self._body = specimen.body
+        self._normals = face_normals(specimen)
+        self._medium = medium
+        self._colours = medium.indices[0].size
+
+    def enter(self, arrivals: Arrivals, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:
+        """Return the reflected rays and, per mode, the refracted ones."""
+        d = arrivals.direction
+        z = -columns(self._normals, arrivals.face)
+        forward = dot(d, z)
+        frame = interface_frame(z, d - forward * z)
+        crystal = FramedMedium(self._medium.take(arrivals.colour), frame)
+        # (p, s, propagation) is right-handed: p is x, s is y.
+        p_axis = frame.world(forward, np.zeros(forward.size), -frame.kappa)
+        importance = arrivals.importance.in_frame(d, p_axis)
+        reflected = importance.intensity()
+        depth = np.zeros(forward.size, np.int16)
+        pieces: tuple[list[InsideRays], list[InsideRays]] = ([], [])
+        for part, face in _faces(FramedMedium(AIR, frame), crystal):
+            from_s, from_p = face.transmission(0), face.transmission(1)
+            arriving = importance.take(part)
+            for mode in (0, 1):
+                power = arriving.power_into(from_p[mode], from_s[mode])
+                power = power * np.abs(face.transmitted[mode].flux()) / forward[part]
+                reflected[part] -= power
+                pieces[mode].append(
+                    _spawned(
+                        face.transmitted[mode],
+                        face.frame,
+                        columns(arrivals.point, part),
+                        power,
+                        arrivals.lane[part],
+                        depth[part],
+                        roulette,
+                    )
+                )
+        back = d - 2.0 * forward * z
+        return Leaving(arrivals.point, back, reflected, arrivals.lane), [_joined(piece) for piece in pieces]
+
+    def leave(self, rays: InsideRays, mode: int, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:
+        """Carry rays to the next face; return those that go out and, per mode, those reflected inside."""
+        distance, exit_face = self._body.exit(rays.point, rays.ray)
+        point = rays.point + distance * rays.ray
+        medium = self._medium.take(rays.lane % self._colours)
+        importance = rays.importance[0]
+        if medium.absorption_per_mm is not None:
+            length = distance * np.sqrt(dot(rays.ray, rays.ray))
+            importance = importance * np.exp(-length * absorption_along_ray(medium, rays.k, mode == 1))
+        z = columns(self._normals, exit_face)
+        tangential = rays.k - dot(rays.k, z) * z
+        frame = interface_frame(z, tangential)
+        depth = rays.depth + np.int16(1)
+        pieces: tuple[list[InsideRays], list[InsideRays]] = ([], [])
+        out: list[Leaving] = []
+        for part, face in _faces(FramedMedium(medium, frame), FramedMedium(AIR, frame)):
+            transmitted, reflected = _shares(face, mode)
+            weight, lane = importance[part], rays.lane[part]
+            gone = np.flatnonzero(transmitted > 0.0)
+            if gone.size:
+                at = gone if isinstance(part, slice) else part[gone]
+                direction = columns(tangential, at) + face.transmitted[0].q.real[gone] * columns(z, at)
+                out.append(Leaving(columns(point, at), direction, weight[gone] * transmitted[gone], lane[gone]))
+            for other in (0, 1):
+                share = weight * reflected[other]
+                pieces[other].append(
+                    _spawned(face.reflected[other], face.frame, columns(point, part), share, lane, depth[part], roulette)
+                )
+        return Leaving.joined(out), [_joined(piece) for piece in pieces]
+
+
+def _faces(source: FramedMedium, target: FramedMedium) -> Iterator[tuple[slice | Index, Face]]:
+    """Yield the rays in up to three parts, by what arithmetic their waves need, with their faces.
+
+    Real where every wave propagates; complex for the far side alone in total reflection; complex on both sides where
+    even a wave of the near side is evanescent.
+    """
+    near, far = source.propagating(), target.propagating()
+    near_free = near[0] & near[1]
+    far_free = far[0] & far[1]
+    if near_free.all() and far_free.all():
+        yield slice(None), solve_face(source, target, False, False)
+        return
+    for chosen, near_complex, far_complex in (
+        (near_free & far_free, False, False),
+        (near_free & ~far_free, False, True),
+        (~near_free, True, True),
+    ):
+        part = np.flatnonzero(chosen)
+        if part.size:
+            yield part, solve_face(source.take(part), target.take(part), near_complex, far_complex)
+
+
+def _shares(face: Face, mode: int) -> tuple[Real, tuple[Real, Real]]:
+    """Return the parts of a mode's flux that go out and into the two reflected modes; they sum to 1.
+
+    The second reflected mode takes what is left: energy is kept to the last bit.
+    """
+    incident = face.incident[mode].flux()
+    s, p = face.transmission(mode)
+    air = face.transmitted[0].q.real  # flux of s and p of unit field; 0 where they are evanescent
+    transmitted = (np.abs(s) ** 2 + np.abs(p) ** 2) * air / incident
+    same = np.abs(face.reflection(mode, mode)) ** 2 * np.abs(face.reflected[mode].flux()) / incident
+    same = np.minimum(same, 1.0)
+    other = np.maximum(1.0 - transmitted - same, 0.0)
+    return transmitted, (same, other) if mode == 0 else (other, same)
+
+
+def _spawned(
+    mode: Mode,
+    frame: InterfaceFrame,
+    point: Real,
+    importance: Real,
+    lane: Index,
+    depth: NDArray[np.int16],
+    roulette: Roulette,
+) -> InsideRays:
+    """Return the rays of a wave that survive, in the world."""
+    kept, factor = roulette.survivors(importance, depth)
+    part = frame.take(kept)
+    zero = np.zeros(kept.size)
+    state = np.empty((10, kept.size))
+    state[0:3] = columns(point, kept)
+    state[3:6] = part.world(*(zero if component is None else component.real[kept] for component in mode.ray))
+    state[6:9] = part.world(part.kappa, zero, mode.q.real[kept])
+    state[9] = importance[kept] * factor
+    return InsideRays(state, lane[kept], depth[kept])
+
+
+def _joined(pieces: list[InsideRays]) -> InsideRays:
+    if len(pieces) == 1:
+        return pieces[0]
+    return InsideRays(
+        np.concatenate([piece.state for piece in pieces], axis=1),
+        np.concatenate([piece.lane for piece in pieces]),
+        np.concatenate([piece.depth for piece in pieces]),
+    )
