@@ -33,6 +33,11 @@ export class Client {
     return (await this.#ask("v1/minerals")).minerals;
   }
 
+  /** A mineral's whole entry: its numbers with their sources, its indices at the D line. */
+  mineral(id) {
+    return this.#ask(`v1/minerals/${encodeURIComponent(id)}`);
+  }
+
   /** Ask for a render; the answer is the job. */
   start(request) {
     return this.#ask("v1/renders", {

@@ -11,6 +11,7 @@ import { Stills } from "./stills.js";
 
 export class Studio extends EventTarget {
   #following = new AbortController();
+  #opening = null;
   #turn = 0; // counts what has been asked for
 
   constructor(client) {
@@ -18,6 +19,7 @@ export class Studio extends EventTarget {
     this.client = client;
     this.demonstrations = [];
     this.minerals = [];
+    this.entries = new Map(); // whole entries of minerals that were looked at, by id
     this.demonstration = null;
     this.fields = [];
     this.values = {};
@@ -46,6 +48,8 @@ export class Studio extends EventTarget {
 
   /** What can be chosen; then the view that a link asks for, else the first look. */
   async open(view) {
+    this.#opening = view;
+    this.problem = null;
     [this.demonstrations, this.minerals] = await Promise.all([this.client.demonstrations(), this.client.minerals()]);
     await this.show(view(this));
   }
@@ -67,6 +71,7 @@ export class Studio extends EventTarget {
   async show({ demonstration, parameters, settings, angle }) {
     this.choose(demonstration ?? this.demonstration?.name);
     Object.assign(this.values, parameters);
+    this.#lookUp();
     this.settings = settings ?? structuredClone(OFFERED);
     this.angle = normalise(angle ?? 0);
     await this.render(settings ?? FIRST_LOOK);
@@ -74,6 +79,21 @@ export class Studio extends EventTarget {
 
   set(name, value) {
     this.values = { ...this.values, [name]: value };
+    this.#lookUp();
+    this.changed();
+  }
+
+  /** Fetch the entry of the chosen mineral, once. */
+  async #lookUp() {
+    const id = this.values.mineral;
+    if (this.entries.has(id) || !this.minerals.some((m) => m.id === id)) return;
+    this.entries.set(id, null);
+    try {
+      this.entries.set(id, await this.client.mineral(id));
+    } catch (error) {
+      this.entries.delete(id);
+      this.fail(error);
+    }
     this.changed();
   }
 
@@ -96,8 +116,9 @@ export class Studio extends EventTarget {
     return { demonstration: this.demonstration.name, parameters: structuredClone(values), ...structuredClone(settings) };
   }
 
-  /** Render what the form says, as the visitor asked for it. */
+  /** Render what the form says. */
   async press() {
+    if (!this.demonstration) return this.open(this.#opening); // the service was away when the page came
     await this.render(this.settings);
   }
 
@@ -139,6 +160,7 @@ export class Studio extends EventTarget {
     const before = this.film;
     this.#mount(film);
     this.changed();
+    this.dispatchEvent(new Event("mount"));
     try {
       await Promise.all([this.#letGo(before), this.#describe(film), this.#watch(film, signal)]);
     } catch (error) {

@@ -63,7 +63,7 @@ export class Action extends Piece {
     const estimate = studio.view?.state === "exact" ? studio.view.picture : null;
     return html`<div class="action">
       <div class="pair">
-        <button type="submit" class="render" ?disabled=${!studio.demonstration} ?data-news=${studio.differs}>${this.say("action.render")}</button>
+        <button type="submit" class="render" ?data-news=${studio.differs || !studio.film}>${this.say("action.render")}</button>
         <button type="button" class="cancel" ?disabled=${!running} @click=${() => studio.cancel()}>${this.say("action.cancel")}</button>
       </div>
       <progress max="1" .value=${studio.asking ? 0 : share} aria-label=${this.say("progress.title")}></progress>

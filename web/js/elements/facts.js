@@ -1,4 +1,4 @@
-// The chosen mineral in one line: formula, system, optical class and sign.
+// The chosen mineral: formula, system, optical class and sign, indices, and where its numbers come from.
 
 import { html, nothing } from "../../vendor/lit.js";
 import { Piece } from "./piece.js";
@@ -8,6 +8,29 @@ const SUBSCRIPTS = "₀₁₂₃₄₅₆₇₈₉";
 /** CaCO3 -> CaCO₃; a number that begins the formula or follows a space or dot counts molecules and stays. */
 export function formulaText(formula) {
   return formula.replace(/(?<=[\p{L})\]])\d+/gu, (digits) => [...digits].map((d) => SUBSCRIPTS[d]).join(""));
+}
+
+/**
+ * The sources of an entry's numbers: every part of it that names a source, under the key it stands at.
+ *
+ * @returns {{part: string, status: string, source: {citation: string, doi: string | null}}[]}
+ */
+export function sourcesOf(entry) {
+  const rows = new Map();
+  for (const [part, value] of Object.entries(entry)) {
+    if (part === "sources" || value === null || typeof value !== "object") continue;
+    for (const node of nodes(value)) {
+      const source = entry.sources[node.source];
+      if (source) rows.set(`${part} ${node.source} ${node.status}`, { part, status: node.status, source });
+    }
+  }
+  return [...rows.values()];
+}
+
+function* nodes(value) {
+  if (value === null || typeof value !== "object") return;
+  if (typeof value.source === "string") yield value;
+  for (const below of Object.values(value)) yield* nodes(below);
 }
 
 export class Facts extends Piece {
@@ -20,15 +43,38 @@ export class Facts extends Piece {
     return mineral.optic_sign ? this.#phrase("sign", mineral.optic_sign) : null;
   }
 
+  #indices({ wavelength_nm: wavelength, ...indices }) {
+    const names = { o: "nₒ", e: "nₑ", n: "n" };
+    const list = Object.entries(indices).map(([axis, n]) => `${names[axis] ?? `n(${axis})`} = ${this.speech.number(n, 4)}`);
+    return this.say("facts.indices", { list: list.join(", "), wavelength: this.speech.number(wavelength, 0, 1) });
+  }
+
+  #source({ part, status, source }) {
+    return html`<li>
+      ${this.#phrase("part", part)}${status === "published" ? nothing : html` (${this.#phrase("status", status)})`}:
+      <span lang="en">${source.citation}${source.doi ? ` doi:${source.doi}` : ""}</span>
+    </li>`;
+  }
+
   render() {
     const mineral = this.studio.minerals.find((m) => m.id === this.studio.values.mineral);
     if (!mineral) return nothing;
+    const entry = this.studio.entries.get(mineral.id);
     const parts = [
-      mineral.formula ? formulaText(mineral.formula) : null,
-      mineral.system ? this.#phrase("system", mineral.system) : null,
-      mineral.optical_class ? [this.#phrase("optical", mineral.optical_class), this.#sign(mineral)].filter(Boolean).join(" ") : null,
+      formulaText(mineral.formula),
+      this.#phrase("system", mineral.system),
+      [this.#phrase("optical", mineral.optical_class), this.#sign(mineral)].filter(Boolean).join(" "),
     ];
-    return html`<p class="facts">${parts.filter(Boolean).join(" · ")}</p>`;
+    return html`<div class="facts">
+      <p>${parts.join(" · ")}</p>
+      <p>${entry ? this.#indices(entry.indices) : "\u00a0"}</p>
+      <details ?hidden=${!entry}>
+        <summary>${this.say("facts.sources")}</summary>
+        <ul>
+          ${entry ? sourcesOf(entry).map((row) => this.#source(row)) : nothing}
+        </ul>
+      </details>
+    </div>`;
   }
 }
 
