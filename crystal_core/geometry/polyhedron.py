@@ -19,6 +19,9 @@ Real = NDArray[np.float64]
 COINCIDENT_MM = 1e-9
 """Two computed corners nearer than this are one: far above rounding of mm-sized bodies, far below any real edge."""
 
+ALONG_PLANE = 1e-200
+"""Stands for the speed, per unit of distance, of a ray parallel to a face."""
+
 
 @dataclass(frozen=True)
 class ConvexPolyhedron:
@@ -129,17 +132,18 @@ class ConvexPolyhedron:
             n = self.normals[index]
             speed = n[0] * direction[0] + n[1] * direction[1] + n[2] * direction[2]
             height = n[0] * point[0] + n[1] * point[1] + n[2] * point[2]
+            # A ray along the plane never reaches it: any tiny speed sends the crossing far away.
+            speed[speed == 0.0] = ALONG_PLANE
             ahead = speed > 0.0
             if other >= 0:  # of two parallel faces a ray can only meet the one it moves towards
-                wall = np.where(ahead, self.offsets[index], -self.offsets[other])
-                found = np.where(ahead, index, other)
-                usable = speed != 0.0
+                distance = np.where(ahead, self.offsets[index], -self.offsets[other])
+                distance -= height
+                distance /= speed
             else:
-                wall, found, usable = self.offsets[index], index, ahead
-            distance = np.divide(wall - height, speed, out=np.full(speed.shape, np.inf), where=usable)
+                distance = np.where(ahead, (self.offsets[index] - height) / speed, np.inf)
             nearer = distance < nearest
             np.copyto(nearest, distance, where=nearer)
-            np.copyto(face, found, where=nearer)
+            np.copyto(face, np.where(ahead, index, other), where=nearer)
         return np.maximum(nearest, 0.0), face
 
     @cached_property

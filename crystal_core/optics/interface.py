@@ -72,9 +72,7 @@ class Face:
         return projected / wave.norm()
 
 
-def solve_face(
-    source: FramedMedium, target: FramedMedium, source_evanescent: bool, target_evanescent: bool
-) -> Face:
+def solve_face(source: FramedMedium, target: FramedMedium, source_evanescent: bool, target_evanescent: bool) -> Face:
     """Return the waves at each ray's face; amplitudes follow on demand.
 
     Parameters

@@ -5,4 +5,4 @@ from crystal_core.render.memory import keep_freed_memory
 from crystal_core.render.quality import QUALITIES, Quality
 from crystal_core.render.tile import TilePixels, render_pixels
 
-__all__ = ["Illumination", "QUALITIES", "Quality", "TilePixels", "keep_freed_memory", "render_pixels"]
+__all__ = ["QUALITIES", "Illumination", "Quality", "TilePixels", "keep_freed_memory", "render_pixels"]

@@ -79,9 +79,7 @@ class IsotropicEvents:
         before = importance.in_frame(rays.k / n, _p_axis(frame, outward, n))
         gone = _diagonal(before, face.transmission(1)[1] * scale, face.transmission(0)[0] * scale)
         kept = _diagonal(before, face.reflection(1, 1), face.reflection(0, 0))
-        inside = _spawned(
-            face.reflected[0], frame, point, kept, rays.lane, rays.depth + np.int16(1), roulette
-        )
+        inside = _spawned(face.reflected[0], frame, point, kept, rays.lane, rays.depth + np.int16(1), roulette)
         out = np.flatnonzero(air > 0.0)
         direction = columns(tangential, out) + air[out] * columns(z, out)
         return Leaving(columns(point, out), direction, gone.intensity()[out], rays.lane[out]), [inside]

@@ -40,8 +40,8 @@ class Quality:
 
 QUALITIES: Mapping[str, Quality] = MappingProxyType(
     {
-        "draft": Quality("draft", 0.06, (2,), 4, 1.0, 0.05),
-        "standard": Quality("standard", 0.015, (4, 16), 4, 0.03, 0.03),
-        "fine": Quality("fine", 0.004, (16, 64), 8, 0.006, 0.01),
+        "draft": Quality("draft", 0.06, (2,), 4, 1.0, 0.15),
+        "standard": Quality("standard", 0.015, (4, 16), 4, 0.06, 0.1),
+        "fine": Quality("fine", 0.004, (16, 64), 8, 0.006, 0.03),
     }
 )

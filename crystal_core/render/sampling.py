@@ -77,9 +77,7 @@ def random_numbers(seed: int, frame: int, tile: int, level: int) -> np.random.Ge
 
     Whoever renders the tile, and in whatever order, draws the same numbers.
     """
-    return np.random.Generator(
-        np.random.Philox(key=np.array((seed, 0), np.uint64), counter=(0, level, tile, frame))
-    )
+    return np.random.Generator(np.random.Philox(key=np.array((seed, 0), np.uint64), counter=(0, level, tile, frame)))
 
 
 def _digital_shift(seed: int, positions: int) -> tuple[int, int]:

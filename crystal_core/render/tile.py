@@ -83,9 +83,9 @@ def render_pixels(
     events = 0
     for level, positions in enumerate(quality.positions):
         random = random_numbers(*key, level)
-        halves, done = _Level(
-            scene, illumination, size, passes(positions, quality.wavelengths, key[0]), watch
-        ).render(across[chosen], down[chosen], Roulette(quality.roulette_below, random))
+        halves, done = _Level(scene, illumination, size, passes(positions, quality.wavelengths, key[0]), watch).render(
+            across[chosen], down[chosen], Roulette(quality.roulette_below, random)
+        )
         events += done
         total[:, chosen] += halves[0] + halves[1]
         samples[chosen] += positions
@@ -198,9 +198,7 @@ def _directions(scene: StagedScene, size: tuple[int, int], x: Real, y: Real) -> 
     width, height = size
     across = camera.tan_half * (2.0 * x / width - 1.0) * (width / height)
     upward = camera.tan_half * (1.0 - 2.0 * y / height)
-    direction = (
-        camera.forward[:, None] + camera.right[:, None] * across + camera.up[:, None] * upward
-    )
+    direction = camera.forward[:, None] + camera.right[:, None] * across + camera.up[:, None] * upward
     return np.asarray(direction / np.sqrt(dot(direction, direction)), np.float64)
 
 

@@ -104,7 +104,9 @@ class UniaxialEvents:
             for other in (0, 1):
                 share = weight * reflected[other]
                 pieces[other].append(
-                    _spawned(face.reflected[other], face.frame, columns(point, part), share, lane, depth[part], roulette)
+                    _spawned(
+                        face.reflected[other], face.frame, columns(point, part), share, lane, depth[part], roulette
+                    )
                 )
         return Leaving.joined(out), [_joined(piece) for piece in pieces]
 

@@ -1,0 +1,80 @@
+"""The manifest of a sequence: what was asked, what was made, and what repeats the geometry by hand."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+import crystal_core
+import minerals_db
+from crystal_core.scene import stage
+from crystal_core.sequence.request import RenderRequest, code_digest
+
+__all__ = ["FrameRecord", "manifest"]
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """One finished frame: its file, the sha256 (hex) of the file, seconds of work, estimated RMS error."""
+
+    index: int
+    angle_deg: float
+    file: str
+    sha256: str
+    seconds: float
+    error_estimate: float
+
+
+def manifest(request: RenderRequest, frames: Sequence[FrameRecord], complete: bool) -> dict[str, Any]:
+    """Return the manifest as JSON-able values.
+
+    Parameters
+    ----------
+    request : RenderRequest
+        What was asked for.
+    frames : sequence of FrameRecord
+        The finished frames, in any order.
+    complete : bool
+        Whether all frames and the animation are there.
+    """
+    scene = request.parameters.scene()
+    parameters = request.canonical()["parameters"]
+    # The texture's pixels play no part in the facts; an asset may be gone by the time a manifest is asked for.
+    facts = request.parameters.facts(stage(scene.model_copy(update={"page": scene.page.model_copy(update=PLAIN)})))
+    ordered = sorted(frames, key=lambda record: record.index)
+    return {
+        "demonstration": request.demonstration,
+        "parameters": parameters,
+        "seed": request.seed,
+        "versions": {
+            "isogyre": crystal_core.__version__,
+            "code": code_digest(),
+            "minerals": minerals_db.data_digest(),
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+        },
+        "request_digest": request.digest(),
+        "size": list(request.size),
+        "frame_count": request.frames,
+        "quality": request.quality,
+        "error_estimate": max((record.error_estimate for record in ordered), default=None),
+        "reproducible": True,
+        "gamut": "linear sRGB clipped to 0–1 per channel",
+        "exposure": scene.exposure,
+        "camera": {
+            "eye_mm": list(scene.camera.eye_mm),
+            "target_mm": list(scene.camera.target_mm),
+            "up": list(scene.camera.up),
+            "vfov_deg": scene.camera.vfov_deg,
+        },
+        "scene": facts,
+        "frames": [asdict(record) for record in ordered],
+        "complete": complete,
+    }
+
+
+PLAIN = {"texture": "digits", "marks_mm": ()}
