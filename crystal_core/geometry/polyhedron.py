@@ -69,7 +69,7 @@ class ConvexPolyhedron:
             b_ub=offsets,
             bounds=[(None, None)] * 3 + [(0, None)],
         )
-        if found.status != 0 or found.x[3] <= COINCIDENT_MM:
+        if found.status != 0 or found.x is None or found.x[3] <= COINCIDENT_MM:
             raise InputError.at("/shape", "the faces do not enclose a body")
         centre = found.x[:3]
         corners = HalfspaceIntersection(np.column_stack((normals, -offsets)), centre).intersections

@@ -42,4 +42,4 @@ def medium(mineral: Mineral, wavelength_nm: ArrayLike, axis: ArrayLike) -> Mediu
         Unit vector, shape (3,); not looked at if the mineral is isotropic.
     """
     indices = principal_indices(mineral, wavelength_nm)
-    return Medium.isotropic(*indices) if len(indices) == 1 else Medium.uniaxial(*indices, axis)
+    return Medium.isotropic(indices[0]) if len(indices) == 1 else Medium.uniaxial(indices[0], indices[1], axis)

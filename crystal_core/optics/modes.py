@@ -144,7 +144,8 @@ class FramedMedium:
         self._q2_o = self._eps_o - kappa * kappa
         if medium.axis is None:
             return
-        cx, cy, cz = self._c = frame.components(_columns(medium.axis))
+        self._c = frame.components(_columns(medium.axis))
+        cx, _, cz = self._c
         self._eps_e = medium.indices[1] ** 2
         self._difference = self._eps_e - self._eps_o
         # a q² + 2 b q + c = 0 is k·ε·k = ε_o ε_e for k = (κ, 0, q). The ray's normal component is a q + b =

@@ -92,7 +92,7 @@ def _p_axis(frame: InterfaceFrame, q: Real, n: Real) -> Real:
 
 def _diagonal(before: Coherency, x: Field, y: Field) -> Coherency:
     """Return J C J† for J = diag(x, y)."""
-    cross: Complex = x * np.conj(y) * (before.xy_re + 1j * before.xy_im)
+    cross: Complex = np.asarray(x * np.conj(y) * (before.xy_re + 1j * before.xy_im), np.complex128)
     return Coherency(np.abs(x) ** 2 * before.xx, np.abs(y) ** 2 * before.yy, cross.real, cross.imag)
 
 

@@ -73,7 +73,7 @@ def passes(positions: int, wavelengths: int, seed: int) -> tuple[Pass, ...]:
 
 
 def random_numbers(seed: int, frame: int, tile: int, level: int) -> np.random.Generator:
-    """Return the generator of one level of one tile: Philox, keyed by the seed, counted from its place in the task grid.
+    """Return the generator of one level of one tile: Philox, keyed by the seed, counted from its place.
 
     Whoever renders the tile, and in whatever order, draws the same numbers.
     """

@@ -166,9 +166,10 @@ class _Level:
     ) -> Arrivals:
         """Return the rays of some pixels at the faces they meet, one for each of a pass's wavelengths."""
         body, eye = self._scene.specimen.body, self._scene.camera.eye[:, None]
-        normal = columns(body.normals.T, face[pixels])
+        at = face[pixels].astype(np.intp)
+        normal = columns(body.normals.T, at)
         ahead = columns(direction, pixels)
-        distance = (body.offsets[face[pixels]] - dot(eye, normal)) / dot(ahead, normal)
+        distance = (body.offsets[at] - dot(eye, normal)) / dot(ahead, normal)
         colour = np.tile(np.arange(first, first + count), pixels.size)
         ray = np.repeat(pixels, count)
         return Arrivals(

@@ -30,8 +30,8 @@ MAX_DEPTH = 32
 """Faces after which a branch goes on only by roulette, however heavy it is: light trapped by total reflection."""
 
 SURVIVAL_BEYOND = 0.95
-"""Chance per face that a branch deeper than `MAX_DEPTH` goes on. Light trapped in a calcite block loses about 5 % of its
-energy per face; a smaller chance would make the survivors heavier from face to face, a few of them very bright."""
+"""Chance per face that a branch deeper than `MAX_DEPTH` goes on. Light trapped in a calcite block loses about 5 % of
+its energy per face; a smaller chance would make survivors heavier from face to face, and a few of them very bright."""
 
 
 @dataclass(slots=True)

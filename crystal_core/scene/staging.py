@@ -22,8 +22,6 @@ __all__ = ["StagedCamera", "StagedPage", "StagedScene", "StagedSpecimen", "cleav
 
 Real = NDArray[np.float64]
 
-TRIGONAL_CLEAVAGE = "a rhombohedral cleavage {h0l} of a trigonal crystal"
-
 
 @dataclass(frozen=True)
 class StagedSpecimen:
@@ -131,7 +129,9 @@ def cleavage_pole_deg(mineral: minerals_db.Mineral) -> float:
     """
     forms = [c.hkl for c in mineral.cleavage if c.hkl[1] == 0 and c.hkl[0] != 0 and c.hkl[2] != 0]
     if mineral.system != "trigonal" or not forms:
-        raise InputError.at("/specimen/shape/cut", f"{mineral.id} has no {TRIGONAL_CLEAVAGE}; cut it as a block")
+        raise InputError.at(
+            "/specimen/shape/cut", f"{mineral.id} does not cleave into a rhombohedron; cut it as a block"
+        )
     cell = mineral.cell
     basis = direct_basis(
         (cell.a_angstrom, cell.b_angstrom, cell.c_angstrom), (cell.alpha_deg, cell.beta_deg, cell.gamma_deg)

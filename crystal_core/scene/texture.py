@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import warnings
 from pathlib import Path
 
@@ -108,7 +109,7 @@ class Texture:
     @property
     def channels(self) -> int:
         """1 for a grey texture, 3 for linear sRGB."""
-        return self.texels.shape[2]
+        return int(self.texels.shape[2])
 
     def average(self, x: Real, y: Real, width_mm: float) -> Real:
         """Return the mean reflectance over axis-parallel squares, shape (channels, N); points outside take the rim's.
@@ -120,7 +121,7 @@ class Texture:
         width_mm : float
             Side of the squares; rounded to a quarter octave of texels.
         """
-        level = round(LEVELS_PER_OCTAVE * np.log2(max(width_mm / self.texel_mm, 1.0)))
+        level = round(LEVELS_PER_OCTAVE * math.log2(max(width_mm / self.texel_mm, 1.0)))
         return self._sample(x, y, level)
 
     def _sample(self, x: Real, y: Real, level: int) -> Real:

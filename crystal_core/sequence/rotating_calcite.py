@@ -225,7 +225,10 @@ class RotatingCalcite(Parameters):
             "page_z_mm": 0.0,
             "gap_mm": self.gap_mm,
             "vertices_mm": body.vertices.tolist(),
-            "faces": [{"normal": n.tolist(), "offset_mm": float(d)} for n, d in zip(body.normals, body.offsets)],
+            "faces": [
+                {"normal": normal.tolist(), "offset_mm": float(offset)}
+                for normal, offset in zip(body.normals, body.offsets, strict=True)
+            ],
             "marks_mm": [list(mark) for mark in self.marks],
             "mark_diameter_mm": self.mark_diameter_mm,
             "page_width_mm": self.page_width_mm,

@@ -37,12 +37,12 @@ class WavelengthSet:
 
 
 def stratified_wavelengths(sets: int, count: int) -> tuple[WavelengthSet, ...]:
-    """Return interleaved sets of wavelengths: together the midpoints of sets·count strata, of which set i has every
-    sets-th.
+    """Return interleaved sets of wavelengths.
 
-    The strata have equal shares of D65·(x̄ + ȳ + z̄), which makes the weights nearly equal in size. The weights of a
-    set are those of its own quadrature; the average over all sets gives a spectrally flat radiance its own grey
-    exactly: what the midpoints miss of it (less than 0.01 from 8 strata on) is shared out equally.
+    Together they are the midpoints of sets·count strata, of which set i has every sets-th. The strata have equal
+    shares of D65·(x̄ + ȳ + z̄), which makes the weights nearly equal in size. The weights of a set are those of its own
+    quadrature; the average over all sets gives a spectrally flat radiance its own grey exactly: what the midpoints
+    miss of it (less than 0.01 from 8 strata on) is shared out equally.
 
     Parameters
     ----------
