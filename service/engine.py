@@ -23,7 +23,7 @@ import os
 import signal
 import tempfile
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol, Self, TypeVar
@@ -195,16 +195,14 @@ class InlineEngine(_Closing):
             self._thread.join()
 
 
-def _settle_in_worker(niceness: int, preload: Sequence[str]) -> None:
-    """Set up a worker process: below the service in priority, out of the terminal's process group, modules at hand.
+def _settle_in_worker(niceness: int) -> None:
+    """Set up a worker process: below the service in priority, out of the terminal's process group.
 
     Ctrl-C goes to every process of the terminal's group; workers must live on until their service stops them.
     """
     with contextlib.suppress(PermissionError):  # a session leader stays where it is
         os.setpgid(0, 0)
     os.nice(niceness)
-    for module in preload:
-        importlib.import_module(module)
 
 
 class DaskEngine(_Closing):
@@ -219,8 +217,6 @@ class DaskEngine(_Closing):
     scratch : Path or None
         Folder for Dask's scratch files (workers keep none unless memory runs short). Files that a killed service left
         there are removed at the next start. None: a temporary folder of its own.
-    preload : sequence of str
-        Modules that each worker imports before its first unit, so that the first one is as quick as the others.
 
     Notes
     -----
@@ -229,9 +225,7 @@ class DaskEngine(_Closing):
     libraries read them when they are loaded, before a worker could set them itself.
     """
 
-    def __init__(
-        self, workers: int, *, niceness: int = 5, scratch: Path | None = None, preload: Sequence[str] = ()
-    ) -> None:
+    def __init__(self, workers: int, *, niceness: int = 5, scratch: Path | None = None) -> None:
         if workers < 1:
             raise InputError.at("/workers", f"must be at least 1, got {workers}")
         # Imported late: half a second that the inline engine need not spend. Dask is untyped, hence Any.
@@ -242,7 +236,7 @@ class DaskEngine(_Closing):
             name = "isogyre-settle"
 
             def setup(self, worker: object) -> None:  # noqa: ARG002
-                _settle_in_worker(niceness, preload)
+                _settle_in_worker(niceness)
 
         self._workers = workers
         self._order = itertools.count()

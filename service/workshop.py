@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import fcntl
 import os
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from service.jobs import Runner
 from service.ledger import Ledger
 from service.settings import Settings
 from service.tile_shelf import TileShelf
+from service.warmth import warm_up
 
 __all__ = ["Workshop"]
 
@@ -119,9 +121,12 @@ class Workshop:
 
     def _dask_engine(self) -> Engine:
         settings = self.settings
-        return DaskEngine(
-            settings.workers,
-            niceness=settings.worker_niceness,
-            scratch=settings.data_dir / "scratch",
-            preload=("crystal_core.sequence",),
-        )
+        engine = DaskEngine(settings.workers, niceness=settings.worker_niceness, scratch=settings.data_dir / "scratch")
+        for _ in range(settings.workers):  # the workers are equally free: each gets one
+            warmth = engine.submit(warm_up, key="warm-up")
+            warmth.add_done_callback(self._tell_of_cold)
+        return engine
+
+    def _tell_of_cold(self, warmth: concurrent.futures.Future[None]) -> None:
+        if not warmth.cancelled() and (error := warmth.exception()) is not None:
+            self._log.warning("a worker could not warm up", exc_info=error)

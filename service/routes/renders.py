@@ -13,6 +13,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from crystal_core import sequence
 from crystal_core.errors import InputError
+from crystal_core.sequence.request import MAX_FRAMES, MAX_SIDE, MIN_SIDE
 from service.press import MANIFEST, SEQUENCE, manifest_bytes
 from service.problems import ProblemError
 from service.records import Job, frame_name
@@ -32,11 +33,11 @@ _REQUEST_SCHEMA: dict[str, Any] = {
     "properties": {
         "demonstration": {"type": "string", "description": "A name from /v1/demonstrations"},
         "parameters": {"type": "object", "description": "After the demonstration's schema", "default": {}},
-        "frames": {"type": "integer", "minimum": 1, "maximum": 360, "default": 36},
+        "frames": {"type": "integer", "minimum": 1, "maximum": MAX_FRAMES, "default": 36},
         "size": {
             "type": "array",
             "description": "Width and height in pixels",
-            "items": {"type": "integer", "minimum": 16, "maximum": 2048},
+            "items": {"type": "integer", "minimum": MIN_SIDE, "maximum": MAX_SIDE},
             "minItems": 2,
             "maxItems": 2,
             "default": [512, 512],
@@ -121,7 +122,7 @@ def frame(
     request: Request,
     job: TheJob,
     workshop: TheWorkshop,
-    index: Annotated[int, Path(ge=0, lt=360)],
+    index: Annotated[int, Path(ge=0, lt=MAX_FRAMES)],
     kind: Literal["webp", "png"],
 ) -> Response:
     """Return a frame's picture; it never changes."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import time
 from pathlib import Path
 
@@ -40,10 +39,6 @@ def surroundings() -> dict[str, object]:
         "omp": os.environ.get("OMP_NUM_THREADS"),
         "interrupt_blocked": signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, set()),
     }
-
-
-def has_imported(module: str) -> bool:
-    return module in sys.modules
 
 
 def die() -> None:

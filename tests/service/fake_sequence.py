@@ -165,3 +165,7 @@ def frame_angle_deg(request: RenderRequest, index: int) -> float:
 
 def manifest(request: RenderRequest, frames: Sequence[FrameRecord], complete: bool) -> dict[str, Any]:
     return {**request.canonical(), "frames": [asdict(frame) for frame in frames], "complete": complete}
+
+
+def stay_cold() -> None:
+    """Take the place of a worker's warm-up: units of the stand-in need none."""

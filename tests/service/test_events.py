@@ -6,8 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from conftest import ask, finish
 from fastapi.testclient import TestClient
+
+from tests.service.helpers import ask, finish
 
 
 def events(text: str) -> list[dict[str, Any]]:

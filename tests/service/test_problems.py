@@ -6,13 +6,13 @@ import json
 from typing import Any
 
 import pytest
-from conftest import ask, finish
 from fastapi.testclient import TestClient
 
 from service.app import create_app
 from service.settings import Settings
 from service.shield import HEADERS
 from service.workshop import Workshop
+from tests.service.helpers import ask, finish
 
 JSON = {"Content-Type": "application/json"}
 LIMIT = 65536

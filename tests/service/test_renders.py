@@ -9,16 +9,16 @@ import os
 from pathlib import Path
 from typing import Any
 
-import fake_sequence
 import numpy as np
 import pytest
-from conftest import ask, finish, wait_until
 from fastapi.testclient import TestClient
 from PIL import Image
 
 from crystal_core.spectra.colour import to_srgb8
 from service.artifacts import ArtifactStore
 from service.settings import Settings
+from tests.service import fake_sequence
+from tests.service.helpers import ask, finish, wait_until
 
 
 def expected_picture(frame: int, **request: Any) -> np.ndarray:

@@ -7,9 +7,7 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
-import fake_sequence
 import pytest
-from conftest import ask, finish, wait_until
 from fastapi.testclient import TestClient
 
 from crystal_core import sequence
@@ -18,6 +16,8 @@ from service.app import create_app
 from service.engine import InlineEngine
 from service.settings import Settings
 from service.workshop import Workshop
+from tests.service import fake_sequence
+from tests.service.helpers import ask, finish, wait_until
 
 
 @contextmanager

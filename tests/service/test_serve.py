@@ -18,9 +18,10 @@ from typing import Any
 import httpx2
 import psutil
 import pytest
-from conftest import wait_until
 
-HERE = Path(__file__).parent
+from tests.service.helpers import wait_until
+
+ROOT = Path(__file__).parents[2]
 
 # One client: each new one reads the system's certificates.
 HTTP = httpx2.Client(timeout=10, trust_env=False, verify=False)
@@ -50,7 +51,7 @@ class Service:
 
     def __init__(self, folder: Path, host: str = "127.0.0.1", port: int = 0, **environment: str) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, str(HERE / "serve_fake.py"), host, str(port)],
+            [sys.executable, "-m", "tests.service.serve_fake", host, str(port)],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -58,7 +59,7 @@ class Service:
                 **os.environ,
                 "ISOGYRE_DATA_DIR": str(folder / "data"),
                 "ISOGYRE_WORKERS": "2",
-                "PYTHONPATH": f"{folder}{os.pathsep}{HERE}",
+                "PYTHONPATH": f"{folder}{os.pathsep}{ROOT}",
                 "PYTHONWARNINGS": "error",
                 **environment,
             },
@@ -151,9 +152,9 @@ def test_ctrl_c_ends_it_with_130(service: Service) -> None:
 
 @pytest.mark.parametrize(("number", "expected"), [(signal.SIGINT, 130), (signal.SIGTERM, 0)])
 def test_signals_while_it_starts_end_it_too(tmp_path: Path, number: int, expected: int) -> None:
-    environment = {**os.environ, "ISOGYRE_DATA_DIR": str(tmp_path / "data"), "PYTHONPATH": str(HERE)}
+    environment = {**os.environ, "ISOGYRE_DATA_DIR": str(tmp_path / "data"), "PYTHONPATH": str(ROOT)}
     process = subprocess.Popen(
-        [sys.executable, str(HERE / "serve_fake.py"), "127.0.0.1", "0"],
+        [sys.executable, "-m", "tests.service.serve_fake", "127.0.0.1", "0"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
