@@ -108,7 +108,7 @@ def test_slider_and_keys_stand_at_frames(visitor: Visitor) -> None:
     assert box is not None
     visitor.page.mouse.click(box["x"] + box["width"] - 2, box["y"] + box["height"] / 2)
     visitor.wait_angle(270)
-    expect(visitor.page.get_by_label("Stage angle").last).to_have_value("270")
+    expect(visitor.page.get_by_role("textbox", name="Stage angle", exact=True)).to_have_value("270")
     assert len(visitor.asked) == 1, "frames that are there are not asked for again"
 
 
@@ -129,7 +129,7 @@ def test_dragging_the_picture_turns_the_stage(visitor: Visitor) -> None:
 def test_any_angle_can_be_had_exactly(visitor: Visitor) -> None:
     visitor.open()
     visitor.wait_done()
-    field = visitor.page.get_by_role("textbox", name="Stage angle")
+    field = visitor.page.get_by_role("textbox", name="Stage angle", exact=True)
     field.fill("33.25")
     field.press("Enter")
     visitor.wait_angle(33.25)
@@ -236,10 +236,12 @@ def test_problem_stands_at_its_control(visitor: Visitor) -> None:
 
 def test_problem_of_a_link_is_told(visitor: Visitor) -> None:
     visitor.expected.append("422")
-    visitor.open({**TINY, "mineral": "kryptonite", "wizardry": "9"})
+    visitor.open({**TINY, "wizardry": "9"})
     alert = visitor.page.get_by_role("alert")
     expect(alert).to_contain_text("This cannot be rendered.")
-    expect(alert).to_contain_text("wizardry")
+    expect(alert).to_contain_text("wizardry")  # no control of the page is about it
+    visitor.open({**TINY, "mineral": "kryptonite"})  # the same page, told another address
+    expect(alert).to_contain_text("What to mend is marked.")
     expect(visitor.page.get_by_label("Mineral", exact=True)).to_have_attribute("aria-invalid", "true")
 
 
@@ -263,6 +265,16 @@ def test_a_service_that_is_away_is_told_and_tried_again(visitor: Visitor) -> Non
     render.click()
     expect(visitor.page.get_by_role("alert")).to_be_hidden()
     visitor.wait_done()
+
+
+def test_a_page_that_found_no_service_begins_again(visitor: Visitor) -> None:
+    visitor.expected.append("ERR_CONNECTION_REFUSED")
+    visitor.page.route("**/v1/demonstrations", lambda route: route.abort("connectionrefused"), times=1)
+    visitor.open()
+    expect(visitor.page.get_by_role("alert")).to_contain_text("The service does not answer.")
+    visitor.page.get_by_role("button", name="Render", exact=True).click()
+    visitor.wait_done()
+    expect(visitor.page.get_by_role("alert")).to_be_hidden()
 
 
 def test_frames_come_even_where_the_stream_breaks(visitor: Visitor) -> None:

@@ -64,7 +64,8 @@ export class Film {
   /** The picture that stands nearest to frame `index`, counted around the turn. */
   nearest(index) {
     for (let away = 0; away <= this.count / 2; away += 1) {
-      const found = this.#pictures.get((index + away) % this.count) ?? this.#pictures.get((index - away + this.count) % this.count);
+      const found =
+        this.#pictures.get((index + away) % this.count) ?? this.#pictures.get((index - away + this.count) % this.count);
       if (found) return found;
     }
     return undefined;

@@ -44,7 +44,12 @@ export function readLink(hash, fieldsFor) {
   const settings = keys.has("quality")
     ? {
         frames: whole(keys.get("frames"), OFFERED.frames),
-        size: keys.has("size") ? keys.get("size").split("x").map((side) => whole(side, side)) : [...OFFERED.size],
+        size: keys.has("size")
+          ? keys
+              .get("size")
+              .split("x")
+              .map((side) => whole(side, side))
+          : [...OFFERED.size],
         quality: keys.get("quality"),
         seed: whole(keys.get("seed"), OFFERED.seed),
       }

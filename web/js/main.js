@@ -57,7 +57,8 @@ addEventListener("hashchange", () => {
 // Where only the controls are in sight, as on a telephone, the picture comes back when there is a new one to see.
 studio.addEventListener("mount", () => {
   const stage = document.querySelector("isogyre-stage");
-  if (stage && stage.getBoundingClientRect().bottom < 60) stage.scrollIntoView({ behavior: still.matches ? "auto" : "smooth" });
+  if (stage && stage.getBoundingClientRect().bottom < 60)
+    stage.scrollIntoView({ behavior: still.matches ? "auto" : "smooth" });
 });
 
 await show(() => studio.open(look));

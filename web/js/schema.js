@@ -22,7 +22,10 @@ const FOREMOST = new Set(["mineral", "cut", "size_mm", "axis_tilt_deg", "analyse
 export function fieldsOf(schema) {
   const resolve = (node) => {
     if (!node?.$ref) return node;
-    const target = node.$ref.replace(/^#\//, "").split("/").reduce((at, key) => at?.[key], schema);
+    const target = node.$ref
+      .replace(/^#\//, "")
+      .split("/")
+      .reduce((at, key) => at?.[key], schema);
     return { ...target, ...node, $ref: undefined };
   };
   return Object.entries(schema.properties).map(([name, raw]) => fieldOf(name, resolve(raw), resolve));

@@ -30,7 +30,10 @@ export class Stills {
 
   /** A picture of this scene at this angle, however it was drawn; the latest, if there are several. */
   anyOf(scene, angle) {
-    return [...this.#films.values()].reverse().find((film) => film.scene === scene && film.angle(0) === angle)?.picture(0);
+    return [...this.#films.values()]
+      .reverse()
+      .find((film) => film.scene === scene && film.angle(0) === angle)
+      ?.picture(0);
   }
 
   /** Whether the picture last asked for is still to come. */

@@ -1,7 +1,8 @@
 // What the page is doing: the form's values, the film on the stage, where the stage stands, what went wrong.
 
-import { apart, normalise, same } from "./angle.js";
+import { normalise, same } from "./angle.js";
 import { Film } from "./film.js";
+import { Gallery } from "./gallery.js";
 import { Player } from "./player.js";
 import { FIRST_LOOK, OFFERED, equal, nearestFrame, still } from "./request.js";
 import { defaultsOf, fieldsOf } from "./schema.js";
@@ -24,9 +25,6 @@ export class Studio extends EventTarget {
     this.fields = [];
     this.values = {};
     this.settings = structuredClone(OFFERED);
-    this.film = null; // what was asked for last
-    this.stale = null; // the last picture of the scene before, until the first of this one is there
-    this.under = null; // an earlier film of the same scene: it stands in for frames that are still to come
     this.asking = false; // a request is on its way to the service
     this.angle = 0;
     this.problem = null;
@@ -35,10 +33,16 @@ export class Studio extends EventTarget {
       () => this.changed(),
       (error) => this.fail(error),
     );
+    this.gallery = new Gallery(this.stills);
     this.player = new Player(
       () => this.film?.count ?? 0,
       () => this.#advance(),
     );
+  }
+
+  /** What was asked for last, null before anything was. */
+  get film() {
+    return this.gallery.film;
   }
 
   /** Tell the page to look again. */
@@ -113,12 +117,17 @@ export class Studio extends EventTarget {
   }
 
   #request(values, settings) {
-    return { demonstration: this.demonstration.name, parameters: structuredClone(values), ...structuredClone(settings) };
+    return {
+      demonstration: this.demonstration.name,
+      parameters: structuredClone(values),
+      ...structuredClone(settings),
+    };
   }
 
   /** Render what the form says. */
   async press() {
-    if (!this.demonstration) return this.open(this.#opening); // the service was away when the page came
+    // The service was away when the page came: begin again.
+    if (!this.demonstration) return this.open(this.#opening).catch((error) => this.fail(error));
     await this.render(this.settings);
   }
 
@@ -158,7 +167,7 @@ export class Studio extends EventTarget {
     this.#following = new AbortController();
     const { signal } = this.#following;
     const before = this.film;
-    this.#mount(film);
+    this.gallery.mount(film, this.angle);
     this.changed();
     this.dispatchEvent(new Event("mount"));
     try {
@@ -174,24 +183,6 @@ export class Studio extends EventTarget {
     if (!film || ended(film.job)) return;
     film.job = { ...film.job, status: "dismissed" };
     await this.client.dismiss(film.job.id).catch(() => {}); // it may have ended by itself; nobody waits for it
-  }
-
-  #mount(film) {
-    const before = this.film;
-    if (before?.scene === film.scene) {
-      this.under = before.loaded > 0 ? before : this.under;
-    } else {
-      this.stale = this.view?.picture ?? null;
-      this.under = null;
-    }
-    this.film = film;
-    const index = nearestFrame(film.request, this.angle);
-    if (!same(film.angle(index), this.angle)) {
-      this.stills.ask(still(film.request, this.angle)); // no frame of the film will ever stand there
-    } else if (before?.scene !== film.scene && index !== 0) {
-      // The frames come in their own order: one coarse picture of where the stage stands comes before them.
-      this.stills.ask(still(film.request, this.angle, "draft"));
-    }
   }
 
   async #watch(film, signal) {
@@ -218,7 +209,7 @@ export class Studio extends EventTarget {
   #finish(film, job) {
     film.lasted ??= (performance.now() - film.began) / 1000;
     if (job.status === "failed") this.fail(new Problem(job.problem ?? {}));
-    if (job.status === "successful" && film === this.film && film.loaded === film.count) this.under = null;
+    if (job.status === "successful" && film === this.film) this.gallery.settle();
   }
 
   async cancel() {
@@ -292,7 +283,7 @@ export class Studio extends EventTarget {
     if (!film || film.count < 2) return false;
     for (let on = 1; on <= film.count; on += 1) {
       const index = (this.frame + on) % film.count;
-      if (this.#exact(film.angle(index))) {
+      if (this.gallery.exact(film.angle(index))) {
         this.angle = film.angle(index);
         this.changed();
         return true;
@@ -311,43 +302,13 @@ export class Studio extends EventTarget {
     return true;
   }
 
-  /** The picture of exactly this angle, the best there is: the film's own, a still, the earlier film's. */
-  #exact(angle) {
-    const film = this.film;
-    if (!film) return undefined;
-    return (
-      at(film, angle) ??
-      this.stills.picture(still(film.request, angle)) ??
-      at(this.under, angle) ??
-      this.stills.anyOf(film.scene, normalise(angle))
-    );
-  }
-
-  /**
-   * What to put on the stage now.
-   *
-   * @returns {{picture: Picture, state: "exact" | "waiting" | "stale"} | null}
-   *   "waiting": of this scene, but of another angle; "stale": of the scene before
-   */
+  /** What to put on the stage now. */
   get view() {
-    const exact = this.#exact(this.angle);
-    if (exact) return { picture: exact, state: "exact" };
-    const near = [this.film, this.under]
-      .map((film) => film?.nearest(nearestFrame(film.request, this.angle)))
-      .filter(Boolean)
-      .sort((a, b) => apart(a.angle, this.angle) - apart(b.angle, this.angle))[0];
-    if (near) return { picture: near, state: "waiting" };
-    return this.stale ? { picture: this.stale, state: "stale" } : null;
+    return this.gallery.view(this.angle);
   }
 
   /** What the manifest says of the scene on the stage, null until it is there. */
   get scene() {
     return this.film?.manifest?.scene ?? null;
   }
-}
-
-function at(film, angle) {
-  if (!film) return undefined;
-  const index = nearestFrame(film.request, angle);
-  return same(film.angle(index), angle) ? film.picture(index) : undefined;
 }

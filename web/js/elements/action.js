@@ -32,7 +32,9 @@ export class Action extends Piece {
         return this.say("progress.accepted");
       case "running": {
         const left = this.#left(film, film.job.progress.fraction);
-        return left === null ? this.say("progress.running", values) : this.say("progress.left", { ...values, left: this.#duration(left) });
+        return left === null
+          ? this.say("progress.running", values)
+          : this.say("progress.left", { ...values, left: this.#duration(left) });
       }
       case "dismissed":
         return this.say("progress.dismissed", values);
@@ -63,15 +65,21 @@ export class Action extends Piece {
     const estimate = studio.view?.state === "exact" ? studio.view.picture : null;
     return html`<div class="action">
       <div class="pair">
-        <button type="submit" class="render" ?data-news=${studio.differs || !studio.film}>${this.say("action.render")}</button>
-        <button type="button" class="cancel" ?disabled=${!running} @click=${() => studio.cancel()}>${this.say("action.cancel")}</button>
+        <button type="submit" class="render" ?data-news=${studio.differs || !studio.film}>
+          ${this.say("action.render")}
+        </button>
+        <button type="button" class="cancel" ?disabled=${!running} @click=${() => studio.cancel()}>
+          ${this.say("action.cancel")}
+        </button>
       </div>
       <progress max="1" .value=${studio.asking ? 0 : share} aria-label=${this.say("progress.title")}></progress>
       <p class="words" data-status=${studio.asking ? "asking" : (film?.status ?? "none")}>${words}</p>
       <p class="words estimate">
-        ${estimate
-          ? html`${this.say(`choice.quality.${estimate.quality}`)}${estimate.error === null ? nothing : html` · <abbr title=${this.say("estimate.help")}>${this.say("estimate.error", { error: this.speech.number(estimate.error, 3, 4) })}</abbr>`}`
-          : nothing}
+        ${
+          estimate
+            ? html`${this.say(`choice.quality.${estimate.quality}`)}${estimate.error === null ? nothing : html` · <abbr title=${this.say("estimate.help")}>${this.say("estimate.error", { error: this.speech.number(estimate.error, 3, 4) })}</abbr>`}`
+            : nothing
+        }
       </p>
       <p class="visually-hidden" role="status" aria-live="polite">${this.#spoken(words)}</p>
     </div>`;

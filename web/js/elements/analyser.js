@@ -42,7 +42,13 @@ export class Analyser extends Piece {
     return html`<fieldset class="analyser" ?data-in=${inside}>
       <legend class="visually-hidden">${this.say("analyser.title")}</legend>
       <label class="switch" title=${this.say("analyser.help")}
-        ><input id="analyser-in" type="checkbox" role="switch" .checked=${inside} @change=${(e) => this.#settle(e.target.checked ? this.last : null)} /><span>${this.say("analyser.title")}</span></label
+        ><input
+          id="analyser-in"
+          type="checkbox"
+          role="switch"
+          .checked=${inside}
+          @change=${(e) => this.#settle(e.target.checked ? this.last : null)}
+        /><span>${this.say("analyser.title")}</span></label
       >
       <isogyre-dial
         .degrees=${degrees}

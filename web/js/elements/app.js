@@ -33,7 +33,10 @@ export class App extends Piece {
             <circle r="11" class="field-of-view"></circle>
             <circle r="4" class="ring"></circle>
             <circle r="7.5" class="ring"></circle>
-            <path class="cross" d="M0 -11C1 -4 1 -1 0 0C-1 -1 -1 -4 0 -11ZM0 11C1 4 1 1 0 0C-1 1 -1 4 0 11ZM-11 0C-4 1 -1 1 0 0C-1 -1 -4 -1 -11 0ZM11 0C4 1 1 1 0 0C1 -1 4 -1 11 0Z"></path>
+            <path
+              class="cross"
+              d="M0 -11C1 -4 1 -1 0 0C-1 -1 -1 -4 0 -11ZM0 11C1 4 1 1 0 0C-1 1 -1 4 0 11ZM-11 0C-4 1 -1 1 0 0C-1 -1 -4 -1 -11 0ZM11 0C4 1 1 1 0 0C1 -1 4 -1 11 0Z"
+            ></path>
           </svg>
           <span>Isogyre</span>
         </p>

@@ -41,7 +41,9 @@ export class Caption extends Piece {
     const ordinary = normalise(degrees - azimuth(axis)) % 180;
     const extraordinary = (ordinary + 90) % 180;
     const pair = (a) => `${this.angle(a, 0)} ${this.say("caption.and")} ${this.angle(a + 180, 0)}`;
-    return html`<p>${this.say("caption.analyser", base)} ${this.say("caption.dark", { o: pair(ordinary), e: pair(extraordinary) })}</p>`;
+    return html`<p>
+      ${this.say("caption.analyser", base)} ${this.say("caption.dark", { o: pair(ordinary), e: pair(extraordinary) })}
+    </p>`;
   }
 
   render() {
@@ -54,9 +56,11 @@ export class Caption extends Piece {
     const key = `caption.${kind}`;
     return html`<section class="caption" aria-labelledby="caption-title">
       <h2 id="caption-title">${this.say("caption.title")}</h2>
-      <p>${this.speech.has(key) ? this.say(key, { mineral: lower }) : this.speech.pick(this.studio.demonstration.summary)}</p>
+      <p>
+        ${this.speech.has(key) ? this.say(key, { mineral: lower }) : this.speech.pick(this.studio.demonstration.summary)}
+      </p>
       ${kind === "uniaxial" ? this.#numbers(scene, name) : nothing}
-      ${kind === "isotropic" && scene?.n_o ? html`<p class="numbers">${this.say("caption.index", { mineral: name, n: this.#n(scene.n_o) })}</p>` : nothing}
+      ${kind === "isotropic" && scene?.n ? html`<p class="numbers">${this.say("caption.index", { mineral: name, n: this.#n(scene.n) })}</p>` : nothing}
       ${kind === "uniaxial" ? this.#analyser(scene, film.request.parameters.analyser_deg) : nothing}
     </section>`;
   }

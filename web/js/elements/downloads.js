@@ -11,7 +11,9 @@ export class Downloads extends Piece {
     const whole = film?.job.status === "successful";
     const links = film?.job.links ?? {};
     const file = (href, name, key) =>
-      href ? html`<a href=${studio.client.address(href)} download=${name}>${this.say(key)}</a>` : html`<span aria-disabled="true">${this.say(key)}</span>`;
+      href
+        ? html`<a href=${studio.client.address(href)} download=${name}>${this.say(key)}</a>`
+        : html`<span aria-disabled="true">${this.say(key)}</span>`;
     const name = film ? film.request.demonstration : "isogyre";
     return html`<nav class="downloads" aria-label=${this.say("download.title")}>
       <span>${this.say("download.title")}</span>

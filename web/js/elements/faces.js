@@ -1,6 +1,7 @@
 // What is drawn on the dials.
 
 import { nothing, svg } from "../../vendor/lit.js";
+import { outline } from "../outline.js";
 
 const spoke = (degrees, inner, outer, name) => {
   const a = (degrees * Math.PI) / 180;
@@ -10,16 +11,31 @@ const spoke = (degrees, inner, outer, name) => {
 const scale = (step, long) =>
   Array.from({ length: 360 / step }, (_, i) => spoke(i * step, (i * step) % long === 0 ? 44 : 47, 50, "tick"));
 
-/** The stage from above: the block, its optic axis, the analyser's transmission axis. */
-export function stageFace({ degrees, azimuth, analyser }) {
+const SQUARE = [
+  [-1, -1],
+  [1, -1],
+  [1, 1],
+  [-1, 1],
+];
+
+/** The outline of the specimen, as large as the dial's inner circle allows. */
+function specimen(vertices) {
+  const corners = vertices ? outline(vertices) : SQUARE;
+  const scale = 30 / Math.max(...corners.map(([x, y]) => Math.hypot(x, y)));
+  const points = corners.map(([x, y]) => `${(x * scale).toFixed(2)},${(-y * scale).toFixed(2)}`).join(" ");
+  return svg`<polygon class="block" points=${points}></polygon>`;
+}
+
+/** The stage from above: the specimen, its optic axis, the analyser's transmission axis. */
+export function stageFace({ degrees, azimuth, analyser, vertices }) {
   return svg`
     <circle class="rim" r="50"></circle>
     ${scale(10, 30)}
     ${analyser === null ? nothing : svg`${spoke(analyser, 0, 42, "analyser")}${spoke(analyser + 180, 0, 42, "analyser")}`}
     <g transform="rotate(${-degrees})">
-      <rect class="block" x="-20" y="-20" width="40" height="40" rx="1"></rect>
+      ${specimen(vertices)}
       <path class="index" d="M50 0 l7 -4 v8 z"></path>
-      ${azimuth === null ? nothing : svg`<g transform="rotate(${-azimuth})"><path class="axis" d="M-26 0 H26 M20 -4.5 L27 0 L20 4.5"></path></g>`}
+      ${azimuth === null ? nothing : svg`<g transform="rotate(${-azimuth})"><path class="axis" d="M-32 0 H32 M25 -4.5 L32 0 L25 4.5"></path></g>`}
     </g>`;
 }
 

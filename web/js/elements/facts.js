@@ -45,7 +45,9 @@ export class Facts extends Piece {
 
   #indices({ wavelength_nm: wavelength, ...indices }) {
     const names = { o: "nₒ", e: "nₑ", n: "n" };
-    const list = Object.entries(indices).map(([axis, n]) => `${names[axis] ?? `n(${axis})`} = ${this.speech.number(n, 4)}`);
+    const list = Object.entries(indices).map(
+      ([axis, n]) => `${names[axis] ?? `n(${axis})`} = ${this.speech.number(n, 4)}`,
+    );
     return this.say("facts.indices", { list: list.join(", "), wavelength: this.speech.number(wavelength, 0, 1) });
   }
 

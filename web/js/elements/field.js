@@ -57,7 +57,8 @@ export class Field extends LitElement {
   #range({ least, most } = {}) {
     const n = (value) => this.speech.number(value, 0, 6);
     const unit = this.speech.unit(this.field.unit);
-    if (least !== undefined && most !== undefined) return this.speech.say("field.between", { least: n(least), most: n(most), unit });
+    if (least !== undefined && most !== undefined)
+      return this.speech.say("field.between", { least: n(least), most: n(most), unit });
     if (least !== undefined) return this.speech.say("field.least", { least: n(least), unit });
     return most === undefined ? "" : this.speech.say("field.most", { most: n(most), unit });
   }
@@ -77,12 +78,13 @@ export class Field extends LitElement {
     const known = allowed.some((m) => m.id === this.value);
     return html`${known ? nothing : html`<option value=${this.#shown(this.value)} selected>${this.#shown(this.value)}</option>`}
     ${classes.map(
-      (c) => html`<optgroup label=${this.speech.has(`class.${c}`) ? this.speech.say(`class.${c}`) : c}>
-        ${allowed
-          .filter((m) => m.optical_class === c)
-          .sort((a, b) => name(a).localeCompare(name(b), this.speech.language))
-          .map((m) => html`<option value=${m.id} ?selected=${m.id === this.value}>${name(m)}</option>`)}
-      </optgroup>`,
+      (c) =>
+        html`<optgroup label=${this.speech.has(`class.${c}`) ? this.speech.say(`class.${c}`) : c}>
+          ${allowed
+            .filter((m) => m.optical_class === c)
+            .sort((a, b) => name(a).localeCompare(name(b), this.speech.language))
+            .map((m) => html`<option value=${m.id} ?selected=${m.id === this.value}>${name(m)}</option>`)}
+        </optgroup>`,
     )}`;
   }
 
@@ -108,11 +110,20 @@ export class Field extends LitElement {
           ${field.kind === "mineral" ? this.#mineralOptions() : this.#choiceOptions()}
         </select>`;
       case "boolean":
-        return html`<input id=${this.#id} type="checkbox" aria-invalid=${invalid} aria-describedby=${described} .checked=${value === true} @change=${(e) => this.#tell(e.target.checked)} />`;
+        return html`<input
+          id=${this.#id}
+          type="checkbox"
+          aria-invalid=${invalid}
+          aria-describedby=${described}
+          .checked=${value === true}
+          @change=${(e) => this.#tell(e.target.checked)}
+        />`;
       case "number":
       case "integer":
       case "analyser":
-        return html`${this.#slider()}<span class="quantity">${this.#number(this.#id, value, field.limits[0], null, this.#typed)}${this.#unit()}</span>`;
+        return html`${this.#slider()}<span class="quantity"
+            >${this.#number(this.#id, value, field.limits[0], null, this.#typed)}${this.#unit()}</span
+          >`;
       case "numbers": {
         const parts = Array.isArray(value) ? value : field.limits.map(() => null);
         return html`<span class="quantity several"
@@ -121,14 +132,23 @@ export class Field extends LitElement {
       }
       default:
         return html`<span class="quantity wide"
-          ><input id=${this.#id} autocomplete="off" spellcheck="false" aria-invalid=${invalid} aria-describedby=${described} .value=${this.#shown(value)} @change=${this.#typed} />${this.#unit()}</span
+          ><input
+            id=${this.#id}
+            autocomplete="off"
+            spellcheck="false"
+            aria-invalid=${invalid}
+            aria-describedby=${described}
+            .value=${this.#shown(value)}
+            @change=${this.#typed}
+          />${this.#unit()}</span
         >`;
     }
   }
 
   #slider() {
     const { least, most } = this.field.limits[0];
-    if (least === undefined || most === undefined || this.field.kind === "integer" || this.field.advanced) return nothing;
+    if (least === undefined || most === undefined || this.field.kind === "integer" || this.field.advanced)
+      return nothing;
     return html`<input
       type="range"
       min=${least}

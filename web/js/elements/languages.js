@@ -14,14 +14,15 @@ export class Languages extends LitElement {
   render() {
     return html`<div class="languages" role="group" aria-label=${this.speech.say("language.title")}>
       ${Object.entries(NAMES).map(
-        ([code, name]) => html`<button
-          type="button"
-          lang=${code}
-          aria-pressed=${code === this.speech.language}
-          @click=${() => this.dispatchEvent(new CustomEvent("speak", { detail: code }))}
-        >
-          ${name}
-        </button>`,
+        ([code, name]) =>
+          html`<button
+            type="button"
+            lang=${code}
+            aria-pressed=${code === this.speech.language}
+            @click=${() => this.dispatchEvent(new CustomEvent("speak", { detail: code }))}
+          >
+            ${name}
+          </button>`,
       )}
     </div>`;
   }

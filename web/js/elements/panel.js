@@ -65,9 +65,10 @@ export class Panel extends Piece {
       groups.set(name, [...(groups.get(name) ?? []), field]);
     }
     return [...groups].map(
-      ([name, members]) => html`<div class="group" role="group" aria-label=${name || nothing}>
-        ${name ? html`<h3>${name}</h3>` : nothing} ${members.map((f) => this.#field(f))}
-      </div>`,
+      ([name, members]) =>
+        html`<div class="group" role="group" aria-label=${name || nothing}>
+          ${name ? html`<h3>${name}</h3>` : nothing} ${members.map((f) => this.#field(f))}
+        </div>`,
     );
   }
 
@@ -86,7 +87,8 @@ export class Panel extends Piece {
     const { studio } = this;
     const { fields } = studio;
     const advanced = fields.filter((f) => f.advanced);
-    const hidden = advanced.some((f) => this.#faults(`/parameters/${f.name}`).length) || this.#faults("/seed").length > 0;
+    const hidden =
+      advanced.some((f) => this.#faults(`/parameters/${f.name}`).length) || this.#faults("/seed").length > 0;
     return html`<form
       class="panel"
       novalidate
@@ -102,11 +104,17 @@ export class Panel extends Piece {
           <p class="summary">${this.speech.pick(studio.demonstration?.summary)}</p>
           ${fields.filter((f) => !f.advanced).map((f) => this.#field(f))}
         </div>
-        ${fields.some((f) => f.kind === "analyser")
-          ? html`<div class="group">
-              <isogyre-analyser .studio=${studio} .speech=${this.speech} .faults=${this.#faults("/parameters/analyser_deg")}></isogyre-analyser>
-            </div>`
-          : nothing}
+        ${
+          fields.some((f) => f.kind === "analyser")
+            ? html`<div class="group">
+                <isogyre-analyser
+                  .studio=${studio}
+                  .speech=${this.speech}
+                  .faults=${this.#faults("/parameters/analyser_deg")}
+                ></isogyre-analyser>
+              </div>`
+            : nothing
+        }
         <div class="group" role="group" aria-label=${this.say("panel.picture")}>
           ${this.#picture("quality")} ${this.#picture("size")} ${this.#picture("frames")}
         </div>

@@ -13,14 +13,18 @@ export class Stage extends Piece {
     const view = studio.view;
     if (view?.state === "exact") return nothing;
     const angle = this.angle(studio.angle, decimals(studio.angle));
-    if (studio.running || studio.stills.waiting) return view?.state === "stale" || !view ? this.say("stage.coming") : this.say("stage.computing", { angle });
+    if (studio.running || studio.stills.waiting)
+      return view?.state === "stale" || !view ? this.say("stage.coming") : this.say("stage.computing", { angle });
     return view ? this.say("stage.absent", { angle }) : this.say("stage.empty");
   }
 
   #described(view) {
     if (!view || view.state === "stale") return this.say("stage.none");
     const { parameters, demonstration } = this.studio.film.request;
-    const title = this.speech.pick(this.studio.demonstrations.find((d) => d.name === demonstration)?.title, demonstration);
+    const title = this.speech.pick(
+      this.studio.demonstrations.find((d) => d.name === demonstration)?.title,
+      demonstration,
+    );
     const mineral = this.studio.minerals.find((m) => m.id === parameters.mineral);
     return this.say("stage.described", {
       title,
@@ -32,7 +36,9 @@ export class Stage extends Piece {
   // A turn about the middle of the picture turns the stage, frame by frame. A finger scrolls the page instead.
   #direction(event) {
     const box = event.currentTarget.getBoundingClientRect();
-    return (-Math.atan2(event.clientY - box.top - box.height / 2, event.clientX - box.left - box.width / 2) * 180) / Math.PI;
+    return (
+      (-Math.atan2(event.clientY - box.top - box.height / 2, event.clientX - box.left - box.width / 2) * 180) / Math.PI
+    );
   }
 
   #take(event) {

@@ -57,11 +57,11 @@ export class Transport extends Piece {
 
   #dial() {
     const { studio } = this;
-    const mineral = studio.minerals.find((m) => m.id === studio.film?.request.parameters.mineral);
-    const axis = mineral?.optical_class === "isotropic" ? null : studio.scene?.optic_axis;
+    const axis = studio.scene?.optic_axis;
     const tilted = axis && Math.hypot(axis[0], axis[1]) > 1e-6;
     const face = stageFace({
       degrees: studio.angle,
+      vertices: studio.scene?.vertices_mm,
       azimuth: tilted ? azimuth(axis) : null,
       analyser: studio.film?.request.parameters.analyser_deg ?? null,
     });
@@ -119,9 +119,36 @@ export class Transport extends Piece {
         ${this.#cells()}
       </div>
       <div class="buttons">
-        <button type="button" class="round" @click=${() => studio.step(-1)} ?disabled=${!film} aria-label=${this.say("stage.back")} title=${this.say("stage.back")}>${BACK}</button>
-        <button type="button" class="round play" @click=${this.#toggle} ?disabled=${!film} aria-label=${this.say(playing ? "stage.pause" : "stage.play")} title=${this.say(playing ? "stage.pause" : "stage.play")}>${playing ? PAUSE : PLAY}</button>
-        <button type="button" class="round" @click=${() => studio.step(1)} ?disabled=${!film} aria-label=${this.say("stage.on")} title=${this.say("stage.on")}>${ON}</button>
+        <button
+          type="button"
+          class="round"
+          @click=${() => studio.step(-1)}
+          ?disabled=${!film}
+          aria-label=${this.say("stage.back")}
+          title=${this.say("stage.back")}
+        >
+          ${BACK}
+        </button>
+        <button
+          type="button"
+          class="round play"
+          @click=${this.#toggle}
+          ?disabled=${!film}
+          aria-label=${this.say(playing ? "stage.pause" : "stage.play")}
+          title=${this.say(playing ? "stage.pause" : "stage.play")}
+        >
+          ${playing ? PAUSE : PLAY}
+        </button>
+        <button
+          type="button"
+          class="round"
+          @click=${() => studio.step(1)}
+          ?disabled=${!film}
+          aria-label=${this.say("stage.on")}
+          title=${this.say("stage.on")}
+        >
+          ${ON}
+        </button>
         <label class="pace"
           ><span>${this.say("stage.pace")}</span>
           <select @change=${this.#pace}>
@@ -132,7 +159,16 @@ export class Transport extends Piece {
       <form class="exact" novalidate @submit=${this.#exact}>
         <label for="angle">${this.say("stage.angle")}</label>
         <span class="quantity"
-          ><input id="angle" inputmode="decimal" autocomplete="off" .value=${this.#shown()} ?disabled=${!film} title=${this.say("stage.exact")} @focus=${() => studio.pause()} @change=${this.#exact} /><span>°</span></span
+          ><input
+            id="angle"
+            inputmode="decimal"
+            autocomplete="off"
+            .value=${this.#shown()}
+            ?disabled=${!film}
+            title=${this.say("stage.exact")}
+            @focus=${() => studio.pause()}
+            @change=${this.#exact}
+          /><span>°</span></span
         >
       </form>
     </section>`;

@@ -12,24 +12,33 @@ export class Trouble extends Piece {
   }
 
   #words(problem) {
-    if (!(problem instanceof Problem)) return html`<p>${this.say("trouble.page")}</p><p lang="en">${problem.message}</p>`;
+    if (!(problem instanceof Problem))
+      return html`<p>${this.say("trouble.page")}</p>
+        <p lang="en">${problem.message}</p>`;
     if (problem.unreachable) return html`<p>${this.say("trouble.unreachable")}</p>`;
     const homeless = this.#homeless(problem);
     const about = problem.errors.length > homeless.length ? this.say("trouble.marked") : nothing;
     // Where every error stands at its control, the service's summary would only say it again.
-    const summary = homeless.length === 0 && problem.errors.length > 0 ? "" : [problem.title, problem.detail].filter(Boolean).join(": ");
+    const summary =
+      homeless.length === 0 && problem.errors.length > 0
+        ? ""
+        : [problem.title, problem.detail].filter(Boolean).join(": ");
     return html`<p><strong>${this.say("trouble.refused")}</strong> ${about}</p>
       ${summary ? html`<p lang="en">${summary}</p>` : nothing}
-      ${homeless.length
-        ? html`<ul>
-            ${homeless.map((e) => html`<li lang="en">${e.pointer ? html`<code>${e.pointer}</code> ` : nothing}${e.detail}</li>`)}
-          </ul>`
-        : nothing}`;
+      ${
+        homeless.length
+          ? html`<ul>
+              ${homeless.map((e) => html`<li lang="en">${e.pointer ? html`<code>${e.pointer}</code> ` : nothing}${e.detail}</li>`)}
+            </ul>`
+          : nothing
+      }`;
   }
 
   render() {
     const { problem } = this.studio;
-    return html`<div class="trouble" role="alert" ?hidden=${!problem}>${problem ? this.#words(problem) : nothing}</div>`;
+    return html`<div class="trouble" role="alert" ?hidden=${!problem}>
+      ${problem ? this.#words(problem) : nothing}
+    </div>`;
   }
 }
 
