@@ -19,20 +19,20 @@ class Quality:
         "draft", "standard" or "fine".
     target_error : float
         Bound on the RMS difference in linear sRGB (white = 1, box pixel filter) from the converged picture.
-    positions : tuple of int
-        Positions per pixel: of every pixel first, then, one level after the other, of the pixels whose estimated
-        error still exceeds `refine_above`. Powers of 4, or 2: then the points are stratified.
+    sides : tuple of int
+        A pixel is cut into side × side cells, one position in each: first every pixel, then, one level after the
+        other, the pixels whose estimated error exceeds `refine_above` or in which positions meet different faces.
     wavelengths : int
-        Wavelengths per position; those of the positions of a level interleave.
+        Per position; those of the positions of a level interleave.
     refine_above : float
         Estimated standard error above which a pixel goes on to the next level.
     roulette_below : float
-        Weight of a branch, as a part of its pixel's wavelength, below which it is ended at random without bias.
+        Importance of a branch, as a part of its pixel's, below which it is ended at random without bias.
     """
 
     name: str
     target_error: float
-    positions: tuple[int, ...]
+    sides: tuple[int, ...]
     wavelengths: int
     refine_above: float
     roulette_below: float
@@ -40,8 +40,8 @@ class Quality:
 
 QUALITIES: Mapping[str, Quality] = MappingProxyType(
     {
-        "draft": Quality("draft", 0.06, (2,), 4, 1.0, 0.15),
-        "standard": Quality("standard", 0.015, (4, 16), 4, 0.06, 0.1),
-        "fine": Quality("fine", 0.004, (16, 64), 8, 0.006, 0.03),
+        "draft": Quality("draft", 0.06, (2,), 2, 1.0, 0.2),
+        "standard": Quality("standard", 0.015, (2, 4), 4, 0.1, 0.06),
+        "fine": Quality("fine", 0.004, (4, 8), 8, 0.006, 0.03),
     }
 )

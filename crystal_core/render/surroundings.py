@@ -25,16 +25,20 @@ class Surroundings:
         The scene.
     wavelength_nm : Real
         The wavelengths of a level's passes, shape (K,).
+    weights : Real
+        Linear sRGB of each wavelength, shape (K, 3), for the mean over the passes; they sum to white.
     footprint_mm : float
         Side of the square of the page that a sample stands for.
     """
 
     def __init__(
-        self, scene: StagedScene, illumination: Illumination, wavelength_nm: Real, footprint_mm: float
+        self, scene: StagedScene, illumination: Illumination, wavelength_nm: Real, weights: Real, footprint_mm: float
     ) -> None:
         self._scene = scene
         self._illumination = illumination
         self._basis = basis(wavelength_nm)
+        # Linear sRGB of light reflected by each of the three basis spectra, (3 of the basis, 3 channels).
+        self._reflected = np.sum(self._basis[:, :, None] * weights, axis=1)
         self._footprint_mm = footprint_mm
         self._half_width = 0.5 * scene.page.texture.width_mm
         self._half_height = 0.5 * scene.page.texture.height_mm
@@ -64,29 +68,23 @@ class Surroundings:
             result[down] = np.where(sheet, value, self._scene.page.table_reflectance) * light
         return result
 
-    def linear_srgb(self, point: Real, direction: Real, weights: Real, first: int) -> Real:
-        """Return the colour each ray sees when it carries all wavelengths of the pass, shape (3, N).
+    def linear_srgb(self, point: Real, direction: Real) -> Real:
+        """Return the colour each ray sees when it carries all wavelengths, shape (3, N).
 
         Parameters
         ----------
         point, direction : Real
             Rays in air above the page, shape (3, N).
-        weights : Real
-            Linear sRGB of each wavelength (`WavelengthSet.weights`), shape (K, 3).
-        first : int
-            Place of the pass's first wavelength among those of the level.
         """
-        spectra = self._basis[:, first : first + weights.shape[0]]
         result = np.full((3, point.shape[1]), self.sky)
         down = np.flatnonzero(direction[2] < 0.0)
         if down.size:
             reflectance, light, sheet = self._page(columns(point, down), columns(direction, down))
             for channel in range(3):
-                if reflectance.shape[0] == 1:
-                    value = reflectance[0]
-                else:
-                    share = np.sum(spectra * weights[:, channel], axis=1)
-                    value = reflectance[0] * share[0] + reflectance[1] * share[1] + reflectance[2] * share[2]
+                value = reflectance[0]
+                if reflectance.shape[0] == 3:
+                    red, green, blue = self._reflected[:, channel]
+                    value = reflectance[0] * red + reflectance[1] * green + reflectance[2] * blue
                 result[channel, down] = np.where(sheet, value, self._scene.page.table_reflectance) * light
         return result
 

@@ -81,22 +81,31 @@ def render_pixels(
     error = np.zeros(count)
     chosen = np.arange(count)
     events = 0
-    for level, positions in enumerate(quality.positions):
-        random = random_numbers(*key, level)
-        halves, done = _Level(scene, illumination, size, passes(positions, quality.wavelengths, key[0]), watch).render(
-            across[chosen], down[chosen], Roulette(quality.roulette_below, random)
+    for level, side in enumerate(quality.sides):
+        roulette = Roulette(quality.roulette_below, random_numbers(*key, level))
+        seen = _Level(scene, illumination, size, side, quality.wavelengths, key[0], watch).render(
+            across[chosen], down[chosen], roulette
         )
-        events += done
-        total[:, chosen] += halves[0] + halves[1]
-        samples[chosen] += positions
-        difference = (halves[0] - halves[1]) / positions  # half of the difference of the halves' means
-        error[chosen] = np.sqrt(np.mean(difference**2, axis=0))
-        chosen = np.flatnonzero(error > quality.refine_above)
+        events += seen.events
+        total[:, chosen] += seen.total
+        samples[chosen] += side * side
+        error[chosen] = seen.error
+        chosen = chosen[seen.edge | (seen.error > quality.refine_above)]
         watch.stop("film")
         if not chosen.size:
             break
     pixels = np.ascontiguousarray((total / samples).T, np.float32).reshape(y1 - y0, x1 - x0, 3)
     return TilePixels(pixels, float(np.sum(error**2)), watch.seconds, events)
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What a level's passes saw: sums of linear sRGB (3, N), estimated errors (N,), and where faces differ (N,)."""
+
+    total: Real
+    error: Real
+    edge: NDArray[np.bool_]
+    events: int
 
 
 class _Level:
@@ -107,19 +116,22 @@ class _Level:
         scene: StagedScene,
         illumination: Illumination,
         size: tuple[int, int],
-        samples: tuple[Pass, ...],
+        side: int,
+        wavelengths: int,
+        seed: int,
         watch: Stopwatch,
     ) -> None:
         self._scene = scene
         self._size = size
-        self._samples = samples
+        self._samples = passes(side, wavelengths, seed)
         self._watch = watch
-        self._wavelength_nm = np.concatenate([sample.wavelengths.wavelength_nm for sample in samples])
-        footprint_mm = samples[0].footprint * _pixel_on_page_mm(scene, size)
-        self._surroundings = Surroundings(scene, illumination, self._wavelength_nm, footprint_mm)
+        self._wavelength_nm = np.concatenate([sample.wavelengths.wavelength_nm for sample in self._samples])
+        footprint_mm = _pixel_on_page_mm(scene, size) / side
+        weights = np.concatenate([sample.wavelengths.weights for sample in self._samples]) / len(self._samples)
+        self._surroundings = Surroundings(scene, illumination, self._wavelength_nm, weights, footprint_mm)
 
-    def render(self, across: Real, down: Real, roulette: Roulette) -> tuple[Real, int]:
-        """Return the sums of linear sRGB over the passes of each half, shape (2, 3, N), and the number of events."""
+    def render(self, across: Real, down: Real, roulette: Roulette) -> _Seen:
+        """Return what the passes see in the pixels of columns `across` and rows `down`, shape (N,)."""
         colours = self._wavelength_nm.size
         tracer = Tracer(
             _events(self._scene.specimen, self._wavelength_nm),
@@ -129,23 +141,25 @@ class _Level:
             roulette,
             self._watch,
         )
-        halves = np.zeros((2, 3, across.size))
+        direct, through = np.zeros((2, 3, across.size)), np.zeros((2, 3, across.size))
+        faces = np.empty((len(self._samples), across.size), np.int32)
         first = 0
-        for sample in self._samples:
+        for number, sample in enumerate(self._samples):
             self._watch.restart()
             direction = _directions(self._scene, self._size, across + sample.x, down + sample.y)
             importance = _importance(self._scene, direction)
             eye = self._scene.camera.eye[:, None]
-            face = self._scene.specimen.finder.first_face(np.broadcast_to(eye, direction.shape), direction)
+            face = faces[number]
+            face[:] = self._scene.specimen.finder.first_face(np.broadcast_to(eye, direction.shape), direction)
             self._watch.stop("camera")
             missed = np.flatnonzero(face < 0)
             # A ray that meets no crystal sees all wavelengths along one path.
-            halves[sample.half][:, missed] += importance.intensity()[missed] * self._surroundings.linear_srgb(
-                np.broadcast_to(eye, (3, missed.size)), columns(direction, missed), sample.wavelengths.weights, first
+            direct[sample.half][:, missed] += importance.intensity()[missed] * self._surroundings.linear_srgb(
+                np.broadcast_to(eye, (3, missed.size)), columns(direction, missed)
             )
             self._watch.stop("page")
-            count = sample.wavelengths.wavelength_nm.size
             met = np.flatnonzero(face >= 0)
+            count = sample.wavelengths.wavelength_nm.size
             step = max(1, BATCH // count)
             for start in range(0, met.size, step):
                 pixels = met[start : start + step]
@@ -153,13 +167,20 @@ class _Level:
             first += count
         radiance = tracer.finish().reshape(across.size, colours)
         self._watch.restart()
+        white = np.zeros((2, 3))
         first = 0
         for sample in self._samples:
             for weights in sample.wavelengths.weights:
+                white[sample.half] += weights
                 for channel in range(3):
-                    halves[sample.half][channel] += weights[channel] * radiance[:, first]
+                    through[sample.half][channel] += weights[channel] * radiance[:, first]
                 first += 1
-        return halves, tracer.events_done
+        # Each half has its own wavelengths, whose weights alone do not add up to white: level that before comparing.
+        positions = 0.5 * len(self._samples)
+        means = direct / positions + through / white[:, :, None]
+        error = np.sqrt(np.mean((0.5 * (means[0] - means[1])) ** 2, axis=0))
+        total = direct[0] + direct[1] + through[0] + through[1]
+        return _Seen(total, error, np.any(faces != faces[0], axis=0), tracer.events_done)
 
     def _arrivals(
         self, pixels: Index, direction: Real, face: NDArray[np.int32], importance: Coherency, first: int, count: int
