@@ -17,7 +17,7 @@ def fail(message: str) -> None:
 
 
 def wait_for(path: Path, result: str) -> str:
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + 90
     while not path.exists():
         if time.monotonic() > deadline:
             raise TimeoutError(path)

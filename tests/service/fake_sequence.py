@@ -132,7 +132,7 @@ def render_tile(request: RenderRequest, frame: int, tile: int, assets: Path | No
     if how.notes:
         with Path(how.notes).open("a", encoding="utf-8") as file:
             file.write(f"{frame} {tile}\n")
-    deadline = time.monotonic() + 30
+    deadline = time.monotonic() + 90
     while how.gate and not Path(how.gate).exists():
         if time.monotonic() > deadline:
             raise TimeoutError(how.gate)

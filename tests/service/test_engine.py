@@ -29,19 +29,19 @@ def engine(request: pytest.FixtureRequest) -> Iterator[Engine]:
 
 
 def test_a_result_comes_back(engine: Engine) -> None:
-    assert engine.submit(engine_units.add, 2, 3, key="sum").result(20) == 5
+    assert engine.submit(engine_units.add, 2, 3, key="sum").result(90) == 5
 
 
 def test_one_key_twice_is_two_units(engine: Engine) -> None:
     first = engine.submit(engine_units.add, 2, 3, key="sum")
-    assert first.result(20) == 5
-    assert engine.submit(engine_units.add, 2, 4, key="sum").result(20) == 6
+    assert first.result(90) == 5
+    assert engine.submit(engine_units.add, 2, 4, key="sum").result(90) == 6
 
 
 def test_an_exception_comes_back_and_the_engine_lives_on(engine: Engine) -> None:
     with pytest.raises(ValueError, match="no such crystal"):
-        engine.submit(engine_units.fail, "no such crystal", key="bad").result(20)
-    assert engine.submit(engine_units.add, 1, 1, key="after").result(20) == 2
+        engine.submit(engine_units.fail, "no such crystal", key="bad").result(90)
+    assert engine.submit(engine_units.add, 1, 1, key="after").result(90) == 2
 
 
 def test_submit_returns_at_once_and_from_any_thread(engine: Engine, tmp_path: Path) -> None:
@@ -60,7 +60,7 @@ def test_submit_returns_at_once_and_from_any_thread(engine: Engine, tmp_path: Pa
     assert time.monotonic() - started < 2
     assert not any(future.done() for future in futures)
     gate.touch()
-    assert [future.result(20) for future in futures] == ["open"] * 4
+    assert [future.result(90) for future in futures] == ["open"] * 4
 
 
 def test_a_cancelled_unit_never_runs(engine: Engine, tmp_path: Path) -> None:
@@ -72,9 +72,9 @@ def test_a_cancelled_unit_never_runs(engine: Engine, tmp_path: Path) -> None:
     assert doomed.cancelled()
     time.sleep(0.3)  # the word of it must reach the worker before the unit's turn comes
     gate.touch()
-    assert blocker.result(20) == "open"
-    assert spared.result(20) == "spared"
-    assert engine.submit(engine_units.note, notes, "last", key="last").result(20) == "last"
+    assert blocker.result(90) == "open"
+    assert spared.result(90) == "spared"
+    assert engine.submit(engine_units.note, notes, "last", key="last").result(90) == "last"
     assert notes.read_text(encoding="utf-8").split() == ["spared", "last"]
 
 
@@ -87,7 +87,7 @@ def test_higher_priority_goes_first_and_equal_ones_in_order(engine: Engine, tmp_
     ]
     time.sleep(0.2)  # let all of them reach the worker's queue before the gate opens
     gate.touch()
-    concurrent.futures.wait(futures, timeout=20)
+    concurrent.futures.wait(futures, timeout=90)
     order = notes.read_text(encoding="utf-8").split()
     assert order.index("high") <= 1  # one unit may have been handed to the worker before
     order.remove("high")
@@ -121,7 +121,7 @@ def test_open_engine_chooses_by_the_number_of_workers() -> None:
     with open_engine(2) as engine:
         assert isinstance(engine, DaskEngine)
         assert engine.workers == 2
-        pids = {engine.submit(engine_units.surroundings, key="who").result(20)["pid"] for _ in range(2)}
+        pids = {engine.submit(engine_units.surroundings, key="who").result(90)["pid"] for _ in range(2)}
         assert os.getpid() not in pids
     with pytest.raises(InputError, match="at least 1"):
         open_engine(0)
@@ -129,14 +129,14 @@ def test_open_engine_chooses_by_the_number_of_workers() -> None:
 
 def test_dask_workers_are_nice_single_threaded_and_deaf_to_ctrl_c() -> None:
     with DaskEngine(1, niceness=3) as engine:
-        seen = engine.submit(engine_units.surroundings, key="who").result(20)
+        seen = engine.submit(engine_units.surroundings, key="who").result(90)
         assert isinstance(seen["pid"], int)
         assert seen["nice"] == os.nice(0) + 3
         assert seen["threads"] == seen["omp"] == "1"
         assert seen["interrupt_blocked"]
         assert os.getpgid(seen["pid"]) != os.getpgid(0)
         os.kill(seen["pid"], signal.SIGINT)
-        assert engine.submit(engine_units.surroundings, key="who").result(20)["pid"] == seen["pid"]
+        assert engine.submit(engine_units.surroundings, key="who").result(90)["pid"] == seen["pid"]
 
 
 def test_dask_listens_on_loopback_only_and_leaves_no_process() -> None:
@@ -144,7 +144,7 @@ def test_dask_listens_on_loopback_only_and_leaves_no_process() -> None:
     before = set(me.children(recursive=True))
     ports_before = {c.laddr for c in me.net_connections("inet") if c.status == psutil.CONN_LISTEN}
     with DaskEngine(2) as engine:
-        engine.submit(engine_units.add, 1, 1, key="warm").result(20)
+        engine.submit(engine_units.add, 1, 1, key="warm").result(90)
         family = [me, *me.children(recursive=True)]
         listening = {
             c.laddr for process in family for c in process.net_connections("inet") if c.status == psutil.CONN_LISTEN
@@ -158,8 +158,8 @@ def test_dask_listens_on_loopback_only_and_leaves_no_process() -> None:
 def test_a_unit_that_kills_its_processes_fails_alone() -> None:
     with DaskEngine(1) as engine:
         with pytest.raises(UnitLostError, match="poison"):
-            engine.submit(engine_units.die, key="poison").result(60)
-        assert engine.submit(engine_units.add, 2, 2, key="after").result(60) == 4
+            engine.submit(engine_units.die, key="poison").result(90)
+        assert engine.submit(engine_units.add, 2, 2, key="after").result(90) == 4
 
 
 def test_units_beside_one_that_kills_are_not_blamed(tmp_path: Path) -> None:
@@ -169,8 +169,8 @@ def test_units_beside_one_that_kills_are_not_blamed(tmp_path: Path) -> None:
         poison = engine.submit(engine_units.die, key="poison")
         beside = [engine.submit(engine_units.add, 1, n, key=f"beside-{n}") for n in range(4)]
         gate.touch()
-        assert isinstance(poison.exception(60), UnitLostError)
-        assert [future.result(60) for future in beside] == [1, 2, 3, 4]
+        assert isinstance(poison.exception(90), UnitLostError)
+        assert [future.result(90) for future in beside] == [1, 2, 3, 4]
 
 
 def test_dask_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -186,14 +186,14 @@ def test_dask_leaves_nothing_on_stderr() -> None:
         "from service.engine import DaskEngine\n"
         "if __name__ == '__main__':\n"
         "    with DaskEngine(2) as engine:\n"
-        "        print(engine.submit(engine_units.add, 40, 2, key='sum').result(20))\n"
-        "        engine.submit(engine_units.fail, 'x', key='bad').exception(20)\n"
+        "        print(engine.submit(engine_units.add, 40, 2, key='sum').result(90))\n"
+        "        engine.submit(engine_units.fail, 'x', key='bad').exception(90)\n"
     )
     script = subprocess.run(
         [sys.executable, "-W", "error", "-X", "dev", "-c", code],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=120,
         check=False,
         env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
     )

@@ -17,6 +17,7 @@ from PIL import Image
 from crystal_core.spectra.colour import to_srgb8
 from service.artifacts import ArtifactStore
 from service.settings import Settings
+from service.workshop import Workshop
 from tests.service import fake_sequence
 from tests.service.helpers import ask, finish, wait_until
 
@@ -126,7 +127,9 @@ def test_equal_requests_share_their_work(client: TestClient, tmp_path: Path) -> 
     assert sorted(units) == sorted({f"{frame} {tile}" for frame in range(3) for tile in range(4)})
 
 
-def test_the_run_stops_when_its_last_job_is_dismissed(client: TestClient, tmp_path: Path) -> None:
+def test_the_run_stops_when_its_last_job_is_dismissed(
+    client: TestClient, inline_workshop: Workshop, tmp_path: Path
+) -> None:
     gate, notes = tmp_path / "gate", tmp_path / "notes"
     how = {"gate": str(gate), "notes": str(notes)}
     first, second = ask(client, parameters=how), ask(client, parameters=how)
@@ -137,6 +140,7 @@ def test_the_run_stops_when_its_last_job_is_dismissed(client: TestClient, tmp_pa
     assert client.get(second).json()["status"] == "running"
     assert client.delete(second).status_code == 204
     assert client.get(second).json()["status"] == "dismissed"
+    wait_until(lambda: not inline_workshop.runner._runs)
     gate.touch()
     marker = finish(client, ask(client, frames=1))  # the engine has come to what was asked for later
     assert marker["status"] == "successful"
@@ -191,7 +195,7 @@ def test_a_full_disk_fails_the_job_and_leaves_nothing_half(
 
 
 def test_a_small_render_does_not_wait_for_a_large_one(client: TestClient) -> None:
-    large = ask(client, frames=40, parameters={"delay_s": 0.01})
+    large = ask(client, frames=200, parameters={"delay_s": 0.01})
     wait_until(lambda: client.get(large).json()["progress"]["tiles_done"] > 0)
     small = finish(client, ask(client, frames=1))
     assert small["status"] == "successful"

@@ -14,6 +14,7 @@ from crystal_core import sequence
 from crystal_core.errors import InputError
 from service.app import create_app
 from service.engine import InlineEngine
+from service.ledger import Ledger
 from service.settings import Settings
 from service.workshop import Workshop
 from tests.service import fake_sequence
@@ -31,10 +32,11 @@ def units(notes: Path) -> list[str]:
 
 
 def leave_half_done(settings: Settings, tmp_path: Path) -> tuple[str, Path]:
-    """Render at least one frame and a few tiles of five frames of four tiles, then close."""
+    """Render at least one frame and a few tiles of 15 frames of four tiles, then close."""
     notes = tmp_path / "notes"
     with opened(settings) as client:
-        address = ask(client, frames=5, parameters={"notes": str(notes), "delay_s": 0.02})
+        address = ask(client, frames=15, parameters={"notes": str(notes), "delay_s": 0.03})
+        wait_until(lambda: client.get(address).json()["progress"]["frames_done"] >= 1)
         wait_until(lambda: client.get(address).json()["progress"]["tiles_done"] >= 7)
     return address, notes
 
@@ -43,24 +45,25 @@ def leave_half_done(settings: Settings, tmp_path: Path) -> tuple[str, Path]:
 def test_finished_units_and_frames_are_kept(settings: Settings, tmp_path: Path) -> None:
     address, notes = leave_half_done(settings, tmp_path)
     before = units(notes)
+    with closing(Ledger(settings.data_dir / "ledger.sqlite")) as ledger:
+        left = ledger.job(address.rpartition("/")[2])
+    assert left is not None
+    assert left.status == "running"
+    done = left.run.tiles_done
+    assert 7 <= done < 60
     with opened(settings) as client:
-        seen = client.get(address).json()
-        assert seen["status"] == "running"
-        assert 7 <= seen["progress"]["tiles_done"] < 20
-        assert seen["progress"]["frames_done"] >= 1
-        done = seen["progress"]["tiles_done"]
         job = finish(client, address)
         assert job["status"] == "successful"
-        assert job["progress"]["tiles_done"] == 20
+        assert job["progress"]["tiles_done"] == 60
         manifest = client.get(f"{address}/manifest.json").json()
     again = units(notes)[len(before) :]
     # Only what had not been noted when the service closed: the unit that was running then is done twice.
-    assert len(again) == 20 - done
-    assert set(before) | set(again) == {f"{frame} {tile}" for frame in range(5) for tile in range(4)}
+    assert len(again) == 60 - done
+    assert set(before) | set(again) == {f"{frame} {tile}" for frame in range(15) for tile in range(4)}
 
     whole = tmp_path / "whole"
     with opened(Settings(data_dir=whole, workers=1)) as client:
-        undisturbed = ask(client, frames=5, parameters={"notes": str(notes), "delay_s": 0.02})
+        undisturbed = ask(client, frames=15, parameters={"notes": str(notes), "delay_s": 0.03})
         finish(client, undisturbed)
         reference = client.get(f"{undisturbed}/manifest.json").json()
     assert [frame["sha256"] for frame in manifest["frames"]] == [frame["sha256"] for frame in reference["frames"]]
@@ -68,19 +71,18 @@ def test_finished_units_and_frames_are_kept(settings: Settings, tmp_path: Path) 
 
 @pytest.mark.usefixtures("fake")
 def test_a_damaged_and_a_missing_result_are_made_again(settings: Settings, tmp_path: Path) -> None:
-    notes, gate = tmp_path / "notes", tmp_path / "gate"
+    notes = tmp_path / "notes"
     with opened(settings) as client:
-        address = ask(client, size=[64, 64], frames=1, parameters={"notes": str(notes), "delay_s": 0.01})
+        address = ask(client, size=[128, 128], frames=1, parameters={"notes": str(notes), "delay_s": 0.02})
         wait_until(lambda: client.get(address).json()["progress"]["tiles_done"] >= 4)
     kept = sorted((settings.data_dir / "units").glob("*/*"))
     assert len(kept) >= 4
     kept[0].write_bytes(b"half a")
     kept[1].unlink()
-    gate.touch()
     with opened(settings) as client:
         assert finish(client, address)["status"] == "successful"
-        assert client.get(address).json()["progress"]["tiles_done"] == 16
-    assert sorted(set(units(notes))) == sorted(f"0 {tile}" for tile in range(16))
+        assert client.get(address).json()["progress"]["tiles_done"] == 64
+    assert sorted(set(units(notes))) == sorted(f"0 {tile}" for tile in range(64))
     assert {unit for unit in units(notes) if units(notes).count(unit) > 1} >= {"0 0", "0 1"}
 
 
@@ -96,7 +98,7 @@ def test_another_version_of_the_code_begins_anew(
             job = finish(client, address)
         assert job["digest"] == fake_sequence.parse_request(job["request"]).digest()
     assert job["status"] == "successful"
-    assert len(units(notes)) == before + 20  # nothing of the old code's work was used
+    assert len(units(notes)) == before + 60  # nothing of the old code's work was used
 
 
 @pytest.mark.usefixtures("fake")
