@@ -123,6 +123,11 @@ class Visitor:
         )
         return found
 
+    def job(self) -> str:
+        """Return the address of the render on the stage."""
+        path: str = self.run("document.querySelector('isogyre-app').studio.film.job.links.self")
+        return self.address.rstrip("/") + path
+
     def run(self, script: str, argument: Any = None) -> Any:
         """Run an expression in the page."""
         return self.page.evaluate(script, argument)

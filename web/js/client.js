@@ -55,7 +55,8 @@ export class Client {
     return this.#ask(job.links.manifest, { signal });
   }
 
+  /** Give a job up; the request outlives the page that makes it. */
   dismiss(id) {
-    return this.#ask(`v1/renders/${encodeURIComponent(id)}`, { method: "DELETE" });
+    return this.#ask(`v1/renders/${encodeURIComponent(id)}`, { method: "DELETE", keepalive: true });
   }
 }

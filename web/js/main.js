@@ -61,4 +61,8 @@ studio.addEventListener("mount", () => {
     stage.scrollIntoView({ behavior: still.matches ? "auto" : "smooth" });
 });
 
+addEventListener("pagehide", (event) => {
+  if (!event.persisted) studio.leave(); // a page that is kept may come back and go on
+});
+
 await show(() => studio.open(look));

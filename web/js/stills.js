@@ -36,6 +36,11 @@ export class Stills {
       ?.picture(0);
   }
 
+  /** Ask no further for what is still to come. */
+  giveUp() {
+    this.#present?.giveUp();
+  }
+
   /** Whether the picture last asked for is still to come. */
   get waiting() {
     return this.#present !== null;
@@ -44,7 +49,7 @@ export class Stills {
   /** Ask for a one-frame request; the one before, if unfinished, is given up. */
   async ask(request) {
     if (this.picture(request) || equal(this.#present?.request, request)) return;
-    this.#present?.giveUp();
+    this.giveUp();
     const stop = new AbortController();
     let job = null;
     const giveUp = () => {

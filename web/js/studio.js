@@ -219,6 +219,12 @@ export class Studio extends EventTarget {
     await gone;
   }
 
+  /** The visitor goes: what nobody asked for need not be finished. A render that was asked for goes on. */
+  leave() {
+    this.stills.giveUp();
+    if (this.film?.first) this.cancel();
+  }
+
   fail(error) {
     this.problem = error;
     this.changed();
