@@ -82,8 +82,9 @@ export class Transport extends Piece {
   #cells() {
     const { film } = this.studio;
     if (!film) return nothing;
+    const gap = Math.min(0.12, film.count * 0.003);
     const cells = Array.from({ length: film.count }, (_, i) =>
-      film.picture(i) ? svg`<rect x=${i + 0.06} width="0.88" height="1"></rect>` : nothing,
+      film.picture(i) ? svg`<rect x=${i + gap / 2} width=${1 - gap} height="1"></rect>` : nothing,
     );
     return html`<svg class="cells" viewBox="0 0 ${film.count} 1" preserveAspectRatio="none" aria-hidden="true">
       <rect class="ground" width=${film.count} height="1"></rect>
