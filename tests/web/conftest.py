@@ -28,7 +28,18 @@ STOP_S = 60
 
 
 @pytest.fixture(scope="session")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def chromium_path() -> str:
+    """Give the path of a Chromium; without one the tests are skipped, or fail where a browser is required."""
+    path = os.environ.get("ISOGYRE_CHROMIUM") or shutil.which("chromium")
+    if path is None:
+        if os.environ.get("ISOGYRE_REQUIRE_BROWSER"):
+            pytest.fail("ISOGYRE_REQUIRE_BROWSER is set, and there is no chromium")
+        pytest.skip("there is no chromium (ISOGYRE_CHROMIUM names another browser's path)")
+    return path
+
+
+@pytest.fixture(scope="session")
+def service(chromium_path: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:  # noqa: ARG001
     """Give the address of a service that renders, with a data directory of its own."""
     environment = {**os.environ, "ISOGYRE_DATA_DIR": str(tmp_path_factory.mktemp("data"))}
     log = tmp_path_factory.mktemp("log") / "service.log"
@@ -54,15 +65,10 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 # For one module at a time: Playwright's loop counts as running for as long as it is open, and would be in the way of
 # any asyncio in tests of other folders.
 @pytest.fixture(scope="module")
-def chromium() -> Iterator[Browser]:
-    path = os.environ.get("ISOGYRE_CHROMIUM") or shutil.which("chromium")
-    if path is None:
-        if os.environ.get("ISOGYRE_REQUIRE_BROWSER"):
-            pytest.fail("ISOGYRE_REQUIRE_BROWSER is set, and there is no chromium")
-        pytest.skip("there is no chromium (ISOGYRE_CHROMIUM names another browser's path)")
+def chromium(chromium_path: str) -> Iterator[Browser]:
     with sync_playwright() as playwright:
         expect.set_options(timeout=30_000)  # a busy machine is slow, not wrong
-        browser = playwright.chromium.launch(executable_path=path, args=CHROMIUM_ARGS)
+        browser = playwright.chromium.launch(executable_path=chromium_path, args=CHROMIUM_ARGS)
         try:
             yield browser
         finally:
