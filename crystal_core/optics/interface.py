@@ -82,12 +82,8 @@ def solve_face(source: FramedMedium, target: FramedMedium, source_evanescent: bo
     source_evanescent, target_evanescent : bool
         Whether a wave of that medium may be evanescent in this batch; see `FramedMedium.pair`.
     """
-    return Face(
-        source.frame,
-        source.pair(+1, source_evanescent),
-        source.pair(-1, source_evanescent),
-        target.pair(+1, target_evanescent),
-    )
+    incident, reflected = source.both_pairs(source_evanescent)
+    return Face(source.frame, incident, reflected, target.pair(+1, target_evanescent))
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,9 @@ __all__ = ["FramedMedium", "Mode", "Wave", "bilinear"]
 ON_AXIS = 1e-28
 """|k × c|²/ε_o below which a wave counts as travelling along the optic axis (an angle of 1e-14: rounding)."""
 
+BOTH_SIGNS = np.array(((1.0,), (-1.0,)))
+"""For waves along and against the normal in one go: half the calls for the same arithmetic."""
+
 
 @dataclass(slots=True)
 class Mode:
@@ -50,6 +53,22 @@ class Mode:
     hx: Field | None
     hy: Field | None
     ray: tuple[Field, Field | None, Field]
+
+    def half(self, which: int) -> Mode:
+        """Return one row of a mode whose arrays have shape (2, N)."""
+
+        def row(values: Field | None) -> Field | None:
+            return None if values is None else _row(values, which)
+
+        return Mode(
+            self.q[which],
+            row(self.ex),
+            row(self.ey),
+            row(self.ez),
+            row(self.hx),
+            row(self.hy),
+            (_row(self.ray[0], which), row(self.ray[1]), _row(self.ray[2], which)),
+        )
 
     def norm(self) -> Field:
         """Return g(ψ, ψ) = 2 (E × H)_z, without conjugation: twice the normal flux where the wave propagates."""
@@ -191,20 +210,29 @@ class FramedMedium:
             Whether a wave of this batch may be evanescent: then the arithmetic is complex. With False every wave must
             propagate (see `propagating`).
         """
+        return self._pair(float(sign), evanescent)
+
+    def both_pairs(self, evanescent: bool) -> tuple[tuple[Mode, Mode], tuple[Mode, Mode]]:
+        """Return the pairs of `pair` for +1 and for −1, computed together."""
+        first, second = self._pair(BOTH_SIGNS, evanescent)
+        return (first.half(0), second.half(0)), (first.half(1), second.half(1))
+
+    def _pair(self, sign: float | Real, evanescent: bool) -> tuple[Mode, Mode]:
+        """Return a pair of modes; a sign of shape (2, 1) gives arrays of shape (2, N)."""
         if self.medium.is_isotropic:
             return self._isotropic_pair(sign, evanescent)
         return self._uniaxial_pair(sign, evanescent)
 
-    def _isotropic_pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
+    def _isotropic_pair(self, sign: float | Real, evanescent: bool) -> tuple[Mode, Mode]:
         n = self.medium.indices[0]
         kappa = self.frame.kappa
         q = sign * _root(self._q2_o, evanescent)
         ray = (kappa, None, q)
-        s = Mode(q, None, np.ones(q.shape), None, -q, None, ray)
-        p = Mode(q, q / n, None, -kappa / n, None, np.broadcast_to(n, q.shape), ray)
+        s = Mode(q, None, np.ones(kappa.shape), None, -q, None, ray)
+        p = Mode(q, q / n, None, -kappa / n, None, np.broadcast_to(n, kappa.shape), ray)
         return s, p
 
-    def _uniaxial_pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
+    def _uniaxial_pair(self, sign: float | Real, evanescent: bool) -> tuple[Mode, Mode]:
         kappa = self.frame.kappa
         cx, cy, cz = self._c
         eps_o = self._eps_o
@@ -212,19 +240,20 @@ class FramedMedium:
         q_o = sign * _root(self._q2_o, evanescent)
         mx: Field = -q_o * cy
         my: Field = q_o * cx - kappa * cz
-        mz: Field = kappa * cy
+        mz: Field = np.broadcast_to(kappa * cy, q_o.shape)
         m2: Field = mx * mx + my * my + mz * mz
 
         # q_e = (root − b)/a, written as its difference from q_o, which solves k·ε·k − ε_o ε_e = −difference·|m|²: near
         # the optic axis the plain difference of two nearly equal roots would lose every digit.
         root = sign * _root(self._discriminant, evanescent)
         slope = self._a * q_o + self._b + root
-        straight = np.flatnonzero((np.abs(slope) < np.abs(root)) | (slope == 0))
-        if straight.size:
+        straight = (np.abs(slope) < np.abs(root)) | (slope == 0)
+        crossed = bool(straight.any())
+        if crossed:
             slope[straight] = 1.0
         shift = self._difference * m2 / slope
-        if straight.size:  # opposite signs: here the plain difference is the one that keeps its digits
-            shift[straight] = ((root - self._b) / self._a - q_o)[straight]
+        if crossed:  # opposite signs: here the plain difference is the one that keeps its digits
+            shift = np.where(straight, (root - self._b) / self._a - q_o, shift)
         q_e = q_o + shift
 
         nx: Field = mx - shift * cy
@@ -267,6 +296,10 @@ def _root(square: Real, evanescent: bool) -> Field:
     root.real = np.sqrt(np.maximum(square, 0.0))
     root.imag = np.sqrt(np.maximum(-square, 0.0))
     return root
+
+
+def _row(values: Field, which: int) -> Field:
+    return values if values.ndim == 1 else values[which]
 
 
 def _columns(axis: Real) -> Real:

@@ -106,7 +106,7 @@ def _spawned(
     roulette: Roulette,
 ) -> InsideRays:
     """Return the rays of an isotropic wave that survive, in the world."""
-    kept, factor = roulette.survivors(importance.intensity(), depth)
+    ((kept, factor),) = roulette.survivors((importance.intensity(),), depth)
     part = frame.take(kept)
     q = mode.q.real[kept]
     k = part.world(part.kappa, np.zeros(kept.size), q)

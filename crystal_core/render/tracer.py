@@ -97,25 +97,36 @@ class Roulette:
     below: float
     random: np.random.Generator
 
-    def survivors(self, importance: Real, depth: NDArray[np.int16]) -> tuple[Index, Real]:
-        """Return which branches go on, and the factor that makes up for those that do not.
+    def survivors(self, importances: tuple[Real, ...], depth: NDArray[np.int16]) -> list[tuple[Index, Real]]:
+        """Return, for each sibling, which of the branches go on, and the factor that makes up for those that do not.
+
+        Siblings share one random number (systematic sampling): each goes on with its own chance, but as few or as
+        many together as those chances add up to. Two faint modes that leave one reflection thus mostly leave one ray
+        with the weight of both, where independent draws would let the number of rays drift from face to face.
 
         Parameters
         ----------
-        importance : Real
-            Of the branches, shape (N,).
+        importances : tuple of Real
+            Of the siblings that one ray splits into, shape (N,) each.
         depth : NDArray
             Faces met, shape (N,).
         """
-        chance = np.minimum(importance / self.below, 1.0)
+        drawn = self.random.random(depth.size)
+        scale = 1.0 / self.below
         deep = depth >= MAX_DEPTH
-        if deep.any():
-            chance = np.where(deep, np.minimum(chance, SURVIVAL_BEYOND), chance)
-        at_risk = np.flatnonzero(chance < 1.0)
-        survives = np.ones(chance.size, np.bool_)
-        survives[at_risk] = self.random.random(at_risk.size) < chance[at_risk]
-        kept = np.flatnonzero(survives)
-        return kept, 1.0 / chance[kept]
+        any_deep = bool(deep.any())
+        before: Real = np.zeros(depth.size)
+        result = []
+        for importance in importances:
+            chance = np.minimum(importance * scale, 1.0)
+            if any_deep:
+                chance = np.where(deep, SURVIVAL_BEYOND * chance, chance)
+            after = before + chance
+            # Does one of the points drawn, drawn + 1, … lie in [before, after)?
+            kept = np.flatnonzero(np.floor(after - drawn) > np.floor(before - drawn))
+            result.append((kept, 1.0 / chance[kept]))
+            before = after
+        return result
 
 
 @dataclass(slots=True)

@@ -60,21 +60,14 @@ class UniaxialEvents:
         for part, face in _faces(FramedMedium(AIR, frame), crystal):
             from_s, from_p = face.transmission(0), face.transmission(1)
             arriving = importance.take(part)
+            powers = []
             for mode in (0, 1):
                 power = arriving.power_into(from_p[mode], from_s[mode])
                 power = power * np.abs(face.transmitted[mode].flux()) / forward[part]
                 reflected[part] -= power
-                pieces[mode].append(
-                    _spawned(
-                        face.transmitted[mode],
-                        face.frame,
-                        columns(arrivals.point, part),
-                        power,
-                        arrivals.lane[part],
-                        depth[part],
-                        roulette,
-                    )
-                )
+                powers.append(power)
+            at_face, lane = columns(arrivals.point, part), arrivals.lane[part]
+            _spawn(pieces, face.frame, face.transmitted, powers, at_face, lane, depth[part], roulette)
         back = d - 2.0 * forward * z
         return Leaving(arrivals.point, back, reflected, arrivals.lane), [_joined(piece) for piece in pieces]
 
@@ -101,34 +94,24 @@ class UniaxialEvents:
                 at = gone if isinstance(part, slice) else part[gone]
                 direction = columns(tangential, at) + face.transmitted[0].q.real[gone] * columns(z, at)
                 out.append(Leaving(columns(point, at), direction, weight[gone] * transmitted[gone], lane[gone]))
-            for other in (0, 1):
-                share = weight * reflected[other]
-                pieces[other].append(
-                    _spawned(
-                        face.reflected[other], face.frame, columns(point, part), share, lane, depth[part], roulette
-                    )
-                )
+            shares = [weight * share for share in reflected]
+            _spawn(pieces, face.frame, face.reflected, shares, columns(point, part), lane, depth[part], roulette)
         return Leaving.joined(out), [_joined(piece) for piece in pieces]
 
 
 def _faces(source: FramedMedium, target: FramedMedium) -> Iterator[tuple[slice | Index, Face]]:
-    """Yield the rays in up to three parts, by what arithmetic their waves need, with their faces.
+    """Yield the rays in one or two parts, by what arithmetic their waves need, with their faces.
 
-    Real where every wave propagates; complex for the far side alone in total reflection; complex on both sides where
-    even a wave of the near side is evanescent.
+    Real on a side where every wave propagates, complex where one may be evanescent. Total reflection is too common,
+    and complex numbers too cheap, to set those rays apart; waves evanescent on the near side are rare.
     """
     near, far = source.propagating(), target.propagating()
     near_free = near[0] & near[1]
-    far_free = far[0] & far[1]
-    if near_free.all() and far_free.all():
-        yield slice(None), solve_face(source, target, False, False)
+    far_complex = not bool((far[0] & far[1]).all())
+    if near_free.all():
+        yield slice(None), solve_face(source, target, False, far_complex)
         return
-    for chosen, near_complex, far_complex in (
-        (near_free & far_free, False, False),
-        (near_free & ~far_free, False, True),
-        (~near_free, True, True),
-    ):
-        part = np.flatnonzero(chosen)
+    for part, near_complex in ((np.flatnonzero(near_free), False), (np.flatnonzero(~near_free), True)):
         if part.size:
             yield part, solve_face(source.take(part), target.take(part), near_complex, far_complex)
 
@@ -148,25 +131,27 @@ def _shares(face: Face, mode: int) -> tuple[Real, tuple[Real, Real]]:
     return transmitted, (same, other) if mode == 0 else (other, same)
 
 
-def _spawned(
-    mode: Mode,
+def _spawn(
+    pieces: tuple[list[InsideRays], list[InsideRays]],
     frame: InterfaceFrame,
+    waves: tuple[Mode, Mode],
+    importances: list[Real],
     point: Real,
-    importance: Real,
     lane: Index,
     depth: NDArray[np.int16],
     roulette: Roulette,
-) -> InsideRays:
-    """Return the rays of a wave that survive, in the world."""
-    kept, factor = roulette.survivors(importance, depth)
-    part = frame.take(kept)
-    zero = np.zeros(kept.size)
-    state = np.empty((10, kept.size))
-    state[0:3] = columns(point, kept)
-    state[3:6] = part.world(*(zero if component is None else component.real[kept] for component in mode.ray))
-    state[6:9] = part.world(part.kappa, zero, mode.q.real[kept])
-    state[9] = importance[kept] * factor
-    return InsideRays(state, lane[kept], depth[kept])
+) -> None:
+    """Add the rays of both modes' waves that survive, in the world, to the pieces of each mode."""
+    survivors = roulette.survivors((importances[0], importances[1]), depth)
+    for piece, wave, importance, (kept, factor) in zip(pieces, waves, importances, survivors, strict=True):
+        part = frame.take(kept)
+        zero = np.zeros(kept.size)
+        state = np.empty((10, kept.size))
+        state[0:3] = columns(point, kept)
+        state[3:6] = part.world(*(zero if component is None else component.real[kept] for component in wave.ray))
+        state[6:9] = part.world(part.kappa, zero, wave.q.real[kept])
+        state[9] = importance[kept] * factor
+        piece.append(InsideRays(state, lane[kept], depth[kept]))
 
 
 def _joined(pieces: list[InsideRays]) -> InsideRays:
