@@ -124,13 +124,17 @@ def _listen(host: str, port: int) -> socket.socket:
     except (OSError, OverflowError) as error:
         raise InputError.at("--host", f"{host} is no address of this machine: {error}") from error
     try:
-        return socket.create_server(address[:2], family=family)
+        listener = socket.create_server(address[:2], family=family)
     except PermissionError as error:
         raise InputError.at("--port", f"port {port} may not be used: {error.strerror}") from error
     except OSError as error:
         reason = os.strerror(error.errno) if error.errno else str(error)
         print(f"isogyre: cannot listen at {host} port {port}: {reason}", file=sys.stderr)
         raise SystemExit(1) from error
+    # Connections inherit it. asyncio sets it only for sockets that name their protocol, which these do not; without it
+    # each answer waits 40 ms for the caller to acknowledge its head.
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return listener
 
 
 def _is_loopback(listener: socket.socket) -> bool:

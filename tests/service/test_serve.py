@@ -18,6 +18,7 @@ import httpx2
 import psutil
 import pytest
 
+from service.serve import _listen
 from tests.service.helpers import wait_until
 
 ROOT = Path(__file__).parents[2]
@@ -176,6 +177,13 @@ def test_a_taken_port_is_one_clear_line_and_code_1(tmp_path: Path) -> None:
             code, out, err = service.end()
     assert (code, out) == (1, "")
     assert err == f"isogyre: cannot listen at 127.0.0.1 port {port}: Address already in use\n"
+
+
+def test_answers_do_not_wait_for_acknowledgements() -> None:
+    with _listen("127.0.0.1", 0) as listener, socket.create_connection(listener.getsockname()):
+        connection, _ = listener.accept()
+        with connection:
+            assert connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY) != 0
 
 
 def test_other_hosts_get_one_line_of_warning(tmp_path: Path) -> None:
