@@ -41,8 +41,9 @@ __all__ = [
     "Rule",
     "Trace",
     "analyser_angles",
-    "extinguishing_angle",
+    "analyser_share",
     "find_image",
+    "light_field",
     "mean_image",
     "trace_down",
     "uniaxial_wave",
@@ -285,39 +286,45 @@ def mean_image(
     return total
 
 
-def extinguishing_angle(
-    manifest: Mapping[str, Any], image: Image, mode: ModeName, block: Block, n_o: float, n_e: float
-) -> float:
-    """Return the angle in [0, 180) at which an analyser before the camera passes nothing of one image.
+def light_field(
+    manifest: Mapping[str, Any], mark: Sequence[float], mode: ModeName, angle_deg: float, n_o: float, n_e: float
+) -> tuple[Vector, Vector]:
+    """Return the direction (3,), away from the eye, and the unit field E (3,) of the light that shows one image.
 
-    The light of that image comes up the path as one mode and leaves the top face linearly polarized along some E
-    perpendicular to its direction k. The analyser at angle a passes the field along t = d - (d.k) k, normalised, with
-    d = cos(a) right + sin(a) up of the camera; E.k = 0, so it passes nothing when cos(a) right.E + sin(a) up.E = 0.
+    That light comes up the path of the image as one mode and leaves the top face linearly polarized.
     """
-    camera = Camera.of(manifest)
-    down = image.trace.direction
-    result = scatter_reference(
-        UP,
-        -(down - (down @ UP) * UP),
-        tensor_uniaxial(n_o, n_e, block.axis),
-        np.eye(3),
-        source_axis=block.axis,
-    )
-    column = MODES.index(mode)
-    field = sum(result.transmitted[i, column] * wave.e for i, wave in enumerate(result.forward))
+    block = Block.of(manifest, angle_deg)
+    down = find_image(manifest, mark, mode, angle_deg, n_o, n_e).trace.direction
+    tensor = tensor_uniaxial(n_o, n_e, block.axis)
+    result = scatter_reference(UP, -(down - (down @ UP) * UP), tensor, np.eye(3), source_axis=block.axis)
+    field = sum(result.transmitted[i, MODES.index(mode)] * wave.e for i, wave in enumerate(result.forward))
     field = field * np.conj(field[int(np.argmax(np.abs(field)))])
     if np.linalg.norm(field.imag) > 1e-9 * np.linalg.norm(field.real):
         raise ArithmeticError("the light of one mode left the block elliptically polarized")
-    return float(np.degrees(np.arctan2(-camera.right @ field.real, camera.up @ field.real)) % 180.0)
+    return down, _unit(field.real)
+
+
+def analyser_share(camera: Camera, direction: Vector, field: Vector, analyser_deg: float) -> float:
+    """Return the share of light with this direction and unit field that an analyser before the camera passes.
+
+    The analyser at angle a (from the picture's +x, counter-clockwise as seen) passes the field along
+    t = (d - (d.k) k), normalised, with d = cos(a) right + sin(a) up of the camera and k the light's direction.
+    """
+    a = np.radians(analyser_deg)
+    d = np.cos(a) * camera.right + np.sin(a) * camera.up
+    return float(_unit(d - (d @ direction) * direction) @ field) ** 2
 
 
 def analyser_angles(
     manifest: Mapping[str, Any], mark: Sequence[float], angle_deg: float, n_o: float, n_e: float
 ) -> tuple[float, float]:
-    """Return the analyser angles (degrees) that extinguish the ordinary and the extraordinary image of a mark."""
-    block = Block.of(manifest, angle_deg)
-    first, second = (
-        extinguishing_angle(manifest, find_image(manifest, mark, mode, angle_deg, n_o, n_e), mode, block, n_o, n_e)
-        for mode in MODES
-    )
-    return first, second
+    """Return the analyser angles in [0, 180) that put out the ordinary and the extraordinary image of a mark.
+
+    With t as in `analyser_share` and E.k = 0, nothing passes when cos(a) right.E + sin(a) up.E = 0.
+    """
+    camera = Camera.of(manifest)
+    angles = []
+    for mode in MODES:
+        _, field = light_field(manifest, mark, mode, angle_deg, n_o, n_e)
+        angles.append(float(np.degrees(np.arctan2(-camera.right @ field, camera.up @ field)) % 180.0))
+    return angles[0], angles[1]

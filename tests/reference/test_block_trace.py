@@ -13,7 +13,9 @@ from tests.reference.block_trace import (
     Block,
     Camera,
     analyser_angles,
+    analyser_share,
     find_image,
+    light_field,
     mean_image,
     uniaxial_wave,
     visible_weights,
@@ -134,6 +136,12 @@ def test_analyser_angles() -> None:
         found = analyser_angles(far, (1.0, 0.5), angle, N_O, N_E)
         for got, expected in zip(found, (angle, angle + 90), strict=True):
             assert abs((got - expected + 90) % 180 - 90) < 1e-3
+        camera = Camera.of(far)
+        for mode, put_out in zip(MODES, found, strict=True):
+            direction, field = light_field(far, (1.0, 0.5), mode, angle, N_O, N_E)
+            for turn in (0.0, 30.0, 90.0):
+                share = analyser_share(camera, direction, field, put_out + turn)
+                assert share == pytest.approx(np.sin(np.radians(turn)) ** 2, abs=1e-6)
     # seen obliquely the two fields are neither at the azimuth nor at right angles, yet near both
     near = manifest(30.0)
     gaps = []
