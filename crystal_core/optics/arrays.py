@@ -25,7 +25,7 @@ def columns(vectors: Real, rays: Rays) -> Real:
     """
     if isinstance(rays, slice):
         return vectors[:, rays]
-    return np.take(vectors, rays, axis=1)
+    return vectors.take(rays, axis=1)
 
 
 def dot(a: Real, b: Real) -> Real:

@@ -39,14 +39,15 @@ class InterfaceFrame:
         return dot(v, self.x), dot(v, self.y), dot(v, self.z)
 
     @overload
-    def world(self, vx: Real, vy: Real, vz: Real) -> Real: ...
+    def world(self, vx: Real, vy: Real | None, vz: Real) -> Real: ...
 
     @overload
-    def world(self, vx: Field, vy: Field, vz: Field) -> Field: ...
+    def world(self, vx: Field, vy: Field | None, vz: Field) -> Field: ...
 
-    def world(self, vx: Field, vy: Field, vz: Field) -> Field:
-        """Return the world vectors, shape (3, N), of components along x, y, z."""
-        return self.x * vx + self.y * vy + self.z * vz
+    def world(self, vx: Field, vy: Field | None, vz: Field) -> Field:
+        """Return the world vectors, shape (3, N), of components along x, y, z; None stands for zero."""
+        in_plane = self.x * vx + self.z * vz
+        return in_plane if vy is None else in_plane + self.y * vy
 
     def take(self, rays: Rays) -> InterfaceFrame:
         """Return the frames of a selection of rays."""

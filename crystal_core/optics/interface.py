@@ -231,14 +231,15 @@ def _field_length(mode: Mode) -> Real:
 def _wave(mode: Mode, length: Real, name: str, frame: InterfaceFrame, free: BoolArray) -> Wave:
     zero = np.zeros(mode.q.shape)
     ex, ey, ez = ((zero if v is None else v) / length for v in (mode.ex, mode.ey, mode.ez))
-    k = frame.world(frame.kappa, zero, _real(mode.q))
-    ray = frame.world(*(zero if component is None else _real(component) for component in mode.ray))
+    k = frame.world(frame.kappa, None, _real(mode.q))
+    sideways = mode.ray[1]
+    ray = frame.world(_real(mode.ray[0]), None if sideways is None else _real(sideways), _real(mode.ray[2]))
     with np.errstate(invalid="ignore", divide="ignore"):  # an evanescent wave has no ray
         ray = np.where(free, ray / np.sqrt(dot(ray, ray)), np.nan)
     return Wave(
         name=name,
         k=k,
-        k_imag=frame.world(zero, zero, np.imag(mode.q) + zero),
+        k_imag=frame.z * (np.imag(mode.q) + zero),
         field=frame.world(ex, ey, ez).astype(np.complex128),
         ray=ray,
         index=np.where(free, np.sqrt(dot(k, k)), np.nan),

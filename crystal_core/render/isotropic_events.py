@@ -87,7 +87,7 @@ class IsotropicEvents:
 
 def _p_axis(frame: InterfaceFrame, q: Real, n: Real) -> Real:
     """Return the unit vectors of p, (q, 0, −κ)/n; (p, s, propagation) is right-handed."""
-    return frame.world(q / n, np.zeros(q.size), -frame.kappa / n)
+    return frame.world(q / n, None, -frame.kappa / n)
 
 
 def _diagonal(before: Coherency, x: Field, y: Field) -> Coherency:
@@ -109,7 +109,7 @@ def _spawned(
     ((kept, factor),) = roulette.survivors((importance.intensity(),), depth)
     part = frame.take(kept)
     q = mode.q.real[kept]
-    k = part.world(part.kappa, np.zeros(kept.size), q)
+    k = part.world(part.kappa, None, q)
     n = np.sqrt(dot(k, k))
     carried = importance.take(kept).to_transverse_frame(k / n, _p_axis(part, q, n))
     state = np.empty((13, kept.size))

@@ -60,6 +60,21 @@ class InsideRays:
         """Return the number of rays."""
         return self.lane.size
 
+    def part(self, rays: slice) -> InsideRays:
+        """Return some of the rays."""
+        return InsideRays(self.state[:, rays], self.lane[rays], self.depth[rays])
+
+    @classmethod
+    def joined(cls, parts: list[InsideRays]) -> InsideRays:
+        """Return several batches, at least one, as one."""
+        if len(parts) == 1:
+            return parts[0]
+        return cls(
+            np.concatenate([part.state for part in parts], axis=1),
+            np.concatenate([part.lane for part in parts]),
+            np.concatenate([part.depth for part in parts]),
+        )
+
 
 @dataclass(slots=True)
 class Pool:
@@ -79,17 +94,15 @@ class Pool:
         return self._count
 
     def pop(self) -> InsideRays:
-        """Take up to about `BATCH` rays, the newest first."""
-        taken = [self._waiting.pop()]
-        count = len(taken[0])
-        while self._waiting and count + len(self._waiting[-1]) <= BATCH:
-            taken.append(self._waiting.pop())
-            count += len(taken[-1])
-        self._count -= count
-        if len(taken) == 1:
-            return taken[0]
-        return InsideRays(
-            np.concatenate([rays.state for rays in taken], axis=1),
-            np.concatenate([rays.lane for rays in taken]),
-            np.concatenate([rays.depth for rays in taken]),
-        )
+        """Take `BATCH` rays, or all if there are fewer, the newest first."""
+        taken: list[InsideRays] = []
+        wanted = BATCH
+        while self._waiting and wanted:
+            rays = self._waiting.pop()
+            if len(rays) > wanted:
+                self._waiting.append(rays.part(slice(wanted, None)))
+                rays = rays.part(slice(0, wanted))
+            taken.append(rays)
+            wanted -= len(rays)
+        self._count -= BATCH - wanted
+        return InsideRays.joined(taken)

@@ -81,8 +81,9 @@ def render_pixels(
     error = np.zeros(count)
     chosen = np.arange(count)
     events = 0
+    whole = 1.0 if scene.camera.analyser is None else 0.5  # importance of a pixel: see _importance
     for level, side in enumerate(quality.sides):
-        roulette = Roulette(quality.roulette_below, random_numbers(*key, level))
+        roulette = Roulette(quality.roulette_below * whole, random_numbers(*key, level))
         seen = _Level(scene, illumination, size, side, quality.wavelengths, key[0], watch).render(
             across[chosen], down[chosen], roulette
         )

@@ -52,7 +52,7 @@ class UniaxialEvents:
         frame = interface_frame(z, d - forward * z)
         crystal = FramedMedium(self._medium.take(arrivals.colour), frame)
         # (p, s, propagation) is right-handed: p is x, s is y.
-        p_axis = frame.world(forward, np.zeros(forward.size), -frame.kappa)
+        p_axis = frame.world(forward, None, -frame.kappa)
         importance = arrivals.importance.in_frame(d, p_axis)
         reflected = importance.intensity()
         depth = np.zeros(forward.size, np.int16)
@@ -69,7 +69,7 @@ class UniaxialEvents:
             at_face, lane = columns(arrivals.point, part), arrivals.lane[part]
             _spawn(pieces, face.frame, face.transmitted, powers, at_face, lane, depth[part], roulette)
         back = d - 2.0 * forward * z
-        return Leaving(arrivals.point, back, reflected, arrivals.lane), [_joined(piece) for piece in pieces]
+        return Leaving(arrivals.point, back, reflected, arrivals.lane), [InsideRays.joined(piece) for piece in pieces]
 
     def leave(self, rays: InsideRays, mode: int, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:
         """Carry rays to the next face; return those that go out and, per mode, those reflected inside."""
@@ -96,7 +96,7 @@ class UniaxialEvents:
                 out.append(Leaving(columns(point, at), direction, weight[gone] * transmitted[gone], lane[gone]))
             shares = [weight * share for share in reflected]
             _spawn(pieces, face.frame, face.reflected, shares, columns(point, part), lane, depth[part], roulette)
-        return Leaving.joined(out), [_joined(piece) for piece in pieces]
+        return Leaving.joined(out), [InsideRays.joined(piece) for piece in pieces]
 
 
 def _faces(source: FramedMedium, target: FramedMedium) -> Iterator[tuple[slice | Index, Face]]:
@@ -145,20 +145,12 @@ def _spawn(
     survivors = roulette.survivors((importances[0], importances[1]), depth)
     for piece, wave, importance, (kept, factor) in zip(pieces, waves, importances, survivors, strict=True):
         part = frame.take(kept)
-        zero = np.zeros(kept.size)
         state = np.empty((10, kept.size))
         state[0:3] = columns(point, kept)
-        state[3:6] = part.world(*(zero if component is None else component.real[kept] for component in wave.ray))
-        state[6:9] = part.world(part.kappa, zero, wave.q.real[kept])
+        sideways = wave.ray[1]
+        state[3:6] = part.world(
+            wave.ray[0].real[kept], None if sideways is None else sideways.real[kept], wave.ray[2].real[kept]
+        )
+        state[6:9] = part.world(part.kappa, None, wave.q.real[kept])
         state[9] = importance[kept] * factor
         piece.append(InsideRays(state, lane[kept], depth[kept]))
-
-
-def _joined(pieces: list[InsideRays]) -> InsideRays:
-    if len(pieces) == 1:
-        return pieces[0]
-    return InsideRays(
-        np.concatenate([piece.state for piece in pieces], axis=1),
-        np.concatenate([piece.lane for piece in pieces]),
-        np.concatenate([piece.depth for piece in pieces]),
-    )

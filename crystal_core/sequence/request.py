@@ -111,13 +111,17 @@ def parse_request(obj: Mapping[str, object], assets: Path | None = None) -> Rend
     raw = obj.get("parameters", {})
     parameters: Parameters | None = None
     if isinstance(name, str) and name in demonstrations() and isinstance(raw, Mapping):
+        model = demonstrations()[name].Parameters
         try:
-            parameters = demonstrations()[name].Parameters.model_validate(raw)
-            stage(parameters.scene(), assets)
+            parameters = model.model_validate(raw)
         except pydantic.ValidationError as error:
             faults += _faults(error, "/parameters")
+            # What else is wrong shows with the faulty values left out.
+            faulty = {detail["loc"][0] for detail in error.errors(include_url=False)}
+            parameters = model.model_validate({key: value for key, value in raw.items() if key not in faulty})
+        try:
+            stage(parameters.scene(), assets)
         except InputError as error:
-            assert parameters is not None
             faults += [_of_parameter(fault, parameters) for fault in error.faults]
     if faults:
         raise InputError(faults)
