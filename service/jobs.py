@@ -62,6 +62,7 @@ class Runner:
         self._inbox: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._runs: dict[str, LiveRun] = {}
         self._in_flight = 0
+        self._stop = threading.Event()
         self._press = InlineEngine()  # encoding keeps its thread busy, and the runner's must stay free
         self._thread = threading.Thread(target=self._loop, name="isogyre-runner", daemon=True)
 
@@ -82,6 +83,7 @@ class Runner:
 
     def close(self) -> None:
         """Stop; what has not ended stays live in the ledger for the next process."""
+        self._stop.set()
         self._inbox.put(None)
         if self._thread.ident is not None:
             self._thread.join()
@@ -232,16 +234,16 @@ class Runner:
                 self._log.info("finished", run=run.id)
             self._drop(run.id)
 
-        future = self._press.submit(
-            print_sequence, run.request, self._ledger.frames(run.id), self._store, key=f"{run.id}/sequence"
-        )
+        frames = self._ledger.frames(run.id)
+        key = f"{run.id}/sequence"
+        future = self._press.submit(print_sequence, run.request, frames, self._store, self._stop, key=key)
         self._when_pressed(run, "the animation", future, done)
 
     def _when_pressed(
         self, run: LiveRun, where: str, future: concurrent.futures.Future[Any], done: Callable[[Any], None]
     ) -> None:
         def ended() -> None:
-            if not run.over:
+            if not run.over and not self._stop.is_set():
                 self._guarded(run.id, where, lambda: done(future.result()))
             self._pump()
 

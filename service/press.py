@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-import io
 import json
+import threading
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from crystal_core import sequence
-from crystal_core.output.images import encode_animated_webp, encode_png, encode_webp
+from crystal_core.output.images import (
+    animation_frame_ms,
+    decode_png,
+    encode_animated_webp,
+    encode_png,
+    encode_webp,
+)
 from crystal_core.spectra.colour import to_srgb8
 from service.artifacts import ArtifactStore
 from service.records import FrameRow, Product, frame_name
@@ -21,9 +26,6 @@ __all__ = ["MANIFEST", "SEQUENCE", "manifest_bytes", "print_frame", "print_seque
 
 MANIFEST = "manifest.json"
 SEQUENCE = "sequence.webp"
-
-FRAME_MS = 100
-"""How long a picture of the animation stands, ms."""
 
 
 def print_frame(
@@ -69,18 +71,36 @@ def print_frame(
 
 
 def print_sequence(
-    request: sequence.RenderRequest, frames: Sequence[FrameRow], store: ArtifactStore
+    request: sequence.RenderRequest, frames: Sequence[FrameRow], store: ArtifactStore, stop: threading.Event
 ) -> tuple[Product, ...]:
     """Make the animation and the manifest of a finished run from its frames, and keep them.
 
+    Parameters
+    ----------
+    request : RenderRequest
+        What was rendered.
+    frames : sequence of FrameRow
+        All its frames.
+    store : ArtifactStore
+        Where the files are and go.
+    stop : Event
+        Set from another thread, it ends the work: a long film takes longer than a stopping service may.
+
+    Returns
+    -------
+    tuple of Product
+        The two files.
+
     Raises
     ------
+    InterruptedError
+        ``stop`` was set.
     OSError
         A frame's file is missing, or the disk is full or not writable.
     """
-    pictures = [_read_png(store.path(frame.sha256).read_bytes()) for frame in frames]
+    film = encode_animated_webp(_KeptFrames(store, frames, stop), animation_frame_ms(len(frames)))
     return (
-        _keep(store, SEQUENCE, encode_animated_webp(pictures, FRAME_MS), "image/webp"),
+        _keep(store, SEQUENCE, film, "image/webp"),
         _keep(store, MANIFEST, manifest_bytes(request, frames, complete=True), "application/json"),
     )
 
@@ -106,6 +126,25 @@ def _keep(store: ArtifactStore, name: str, data: bytes, media_type: str) -> Prod
     return Product(name=name, sha256=store.put(data), media_type=media_type, size=len(data))
 
 
-def _read_png(data: bytes) -> NDArray[np.uint8]:
-    with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
-        return np.asarray(picture.convert("RGB"))
+class _KeptFrames(Sequence[NDArray[np.uint8]]):
+    """The pictures of finished frames, each read when it is asked for: a long film need not fit into memory."""
+
+    def __init__(self, store: ArtifactStore, frames: Sequence[FrameRow], stop: threading.Event) -> None:
+        self._stop = stop
+        self._files = [store.path(frame.sha256) for frame in frames]
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+    @overload
+    def __getitem__(self, index: int) -> NDArray[np.uint8]: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[NDArray[np.uint8]]: ...
+
+    def __getitem__(self, index: int | slice) -> NDArray[np.uint8] | Sequence[NDArray[np.uint8]]:
+        if isinstance(index, slice):
+            return [self[one] for one in range(len(self))[index]]
+        if self._stop.is_set():
+            raise InterruptedError("the service is stopping")
+        return decode_png(self._files[index].read_bytes())

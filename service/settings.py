@@ -42,9 +42,6 @@ class Settings(BaseSettings):
         default=5, description="How far workers stand behind the service when processors are scarce"
     )
     max_body_bytes: Annotated[int, Field(ge=1024)] = Field(default=65536, description="Largest request body")
-    max_pixels: Annotated[int, Field(ge=256)] = Field(
-        default=2**27, description="Most pixels of one render: frames x width x height"
-    )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         default="info", description="Least level that is logged"
     )

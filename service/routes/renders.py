@@ -18,7 +18,6 @@ from service.press import MANIFEST, SEQUENCE, manifest_bytes
 from service.problems import ProblemError
 from service.records import Job, frame_name
 from service.routes.common import IMMUTABLE, TheWorkshop, is_known, problem_answers, unchanged
-from service.settings import Settings
 from service.streams import watch
 from service.views import Render, render_view
 from service.workshop import Workshop
@@ -176,18 +175,11 @@ async def _json_body(request: Request) -> dict[str, Any]:
 
 def _submit(workshop: Workshop, body: dict[str, Any]) -> Job:
     request = sequence.parse_request(body)
-    _check_limits(request, workshop.settings)
+    _refuse_own_pictures(request)
     return workshop.runner.submit(request)
 
 
-def _check_limits(request: sequence.RenderRequest, settings: Settings) -> None:
-    width, height = request.size
-    pixels = request.frames * width * height
-    if pixels > settings.max_pixels:
-        raise InputError.at(
-            "/frames",
-            f"{request.frames} frames of {width} x {height} are {pixels} pixels; the most is {settings.max_pixels}",
-        )
+def _refuse_own_pictures(request: sequence.RenderRequest) -> None:
     texture = request.canonical()["parameters"].get("texture", "digits")
     if texture != "digits":
         raise InputError.at("/parameters/texture", 'only "digits" here; the command line also takes a picture\'s path')

@@ -203,21 +203,6 @@ def test_a_small_render_does_not_wait_for_a_large_one(client: TestClient) -> Non
     client.delete(large)
 
 
-@pytest.mark.parametrize(("pixels", "status"), [(3 * 32 * 32, 202), (3 * 32 * 32 - 1, 422)])
-def test_the_limit_of_pixels(fake: None, tmp_path: Path, pixels: int, status: int) -> None:  # noqa: ARG001
-    from service.app import create_app
-    from service.engine import InlineEngine
-    from service.workshop import Workshop
-
-    settings = Settings(data_dir=tmp_path, workers=1, max_pixels=pixels)
-    with TestClient(create_app(settings, workshop=Workshop(settings, InlineEngine))) as client:
-        answer = client.post("/v1/renders", json={"demonstration": "fake"})
-    assert answer.status_code == status
-    if status == 422:
-        assert answer.json()["errors"][0]["pointer"] == "/frames"
-        assert "3072" in answer.json()["detail"]
-
-
 def test_pictures_of_the_callers_own_are_refused(client: TestClient) -> None:
     for texture in ("asset:" + "0" * 64, "/etc/passwd"):
         answer = client.post("/v1/renders", json={"demonstration": "fake", "parameters": {"texture": texture}})

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import sqlite3
+import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
 from crystal_core import sequence
 from crystal_core.errors import InputError
+from crystal_core.output.images import decode_png
+from service import press
 from service.app import create_app
 from service.engine import InlineEngine
 from service.ledger import Ledger
@@ -133,6 +137,29 @@ def test_ended_jobs_stay_as_they_are(settings: Settings, tmp_path: Path) -> None
         assert client.get(dismissed).json()["status"] == "dismissed"
         assert client.get(done).json()["status"] == "successful"
         assert client.get(f"{done}/frames/0.png").content == picture
+
+
+@pytest.mark.usefixtures("fake")
+def test_a_film_that_is_being_made_does_not_hold_up_the_end(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reached = tmp_path / "reached"
+
+    def slowly(data: bytes) -> np.ndarray:
+        reached.touch()
+        time.sleep(0.1)
+        return decode_png(data)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(press, "decode_png", slowly)
+        with opened(settings) as client:
+            address = ask(client, frames=200, size=[16, 16])  # the film would take 20 seconds
+            wait_until(reached.exists)
+            started = time.monotonic()
+        assert time.monotonic() - started < 10
+    with opened(settings) as client:
+        assert finish(client, address)["status"] == "successful"
+        assert client.get(f"{address}/sequence.webp").status_code == 200
 
 
 @pytest.mark.usefixtures("fake")
