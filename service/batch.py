@@ -80,7 +80,7 @@ class Batch:
             while self._launch(engine, units, flying):
                 self._keep_on()
                 ended, _ = concurrent.futures.wait(flying, _PATIENCE_S, concurrent.futures.FIRST_COMPLETED)
-                for future in ended:
+                for future in sorted(ended, key=flying.__getitem__):  # what is told of a failure is told of the first
                     frame, tile = flying.pop(future)
                     of_frame = results.setdefault(frame, [])
                     of_frame.append(self._result(future, frame, tile))

@@ -12,7 +12,8 @@ from PIL import Image, PngImagePlugin
 
 __all__ = ["animation_frame_ms", "decode_png", "encode_animated_webp", "encode_png", "encode_webp"]
 
-# Measured on the same page, with and without noise: the smallest files of levels 1 to 6, in half the time of level 6.
+# Measured on a 512² page of digits and thin lines, with and without noise: the smallest files of levels 1 to 6, in half
+# the time of level 6.
 _PNG_LEVEL = 3
 _SRGB_PERCEPTUAL = b"\x00"
 # Measured on a 512² page of doubled digits and one-pixel lines, 36 frames: at quality 92 lightness is off by 1.4/255
