@@ -13,7 +13,7 @@ from crystal_core.render.illumination import Illumination
 from crystal_core.render.isotropic_events import IsotropicEvents
 from crystal_core.render.quality import Quality
 from crystal_core.render.rays import BATCH
-from crystal_core.render.sampling import Pass, passes, random_numbers
+from crystal_core.render.sampling import passes, random_numbers
 from crystal_core.render.surroundings import Surroundings
 from crystal_core.render.tracer import Arrivals, Events, Roulette, Stopwatch, Tracer
 from crystal_core.render.uniaxial_events import UniaxialEvents

@@ -148,14 +148,15 @@ class Texture:
     def _filtered(self, level: int) -> tuple[NDArray[np.float32], int]:
         """Return the texels averaged over squares of 2^(level/4) texels, (channels, H, W), and their spacing.
 
-        Wide averages are kept at every stride-th texel; what the bilinear interpolation between those blurs (a tent of
-        variance stride²/6 against a box's width²/12) is taken off the box.
+        Wide averages are kept at every stride-th texel. A texel counts as a square of even reflectance here (variance
+        1/12) and the levels are interpolated by tents (stride²/6), where the texture itself is texels under tents of 1:
+        the box (width²/12) is made so much narrower that the variance of the whole is right.
         """
         width = 2.0 ** (level / LEVELS_PER_OCTAVE)
         stride = max(1, int(width // 4))
         values = np.moveaxis(self.texels, -1, 0)
         if level > 0:
-            box = np.sqrt(max(width**2 - 2.0 * (stride**2 - 1), 1.0))
+            box = math.sqrt(max(width**2 - 1.0 - 2.0 * (stride**2 - 1), 0.01))
             values = _box_average(_box_average(values, box, 1), box, 2)
         values = values[:, ::stride, ::stride]
         if min(values.shape[1:]) < 2:  # a texture of a few texels still needs two corners a side
@@ -164,7 +165,7 @@ class Texture:
 
 
 def _box_average(values: Texels, width: float, axis: int) -> Texels:
-    """Average over `width` texels (any real number ≥ 1) along an axis; the rim's texels go on outside."""
+    """Average over `width` texels (any real number > 0) along an axis; the rim's texels go on outside."""
     length = values.shape[axis]
     reach = int(np.ceil(0.5 * width + 0.5))
     pad = [(0, 0)] * values.ndim

@@ -1,0 +1,135 @@
+"""Pictures: the same bits for the same request, the promised error, the sky in a mirror, the light on a page."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crystal_core.render import QUALITIES, Illumination, Quality, TilePixels, render_pixels
+from crystal_core.render.sampling import passes
+from crystal_core.scene import Camera, PointLight, Scene, Shape, Sky, Specimen, StagedScene, stage
+
+SIDE = 96
+SIZE = (SIDE, SIDE)
+
+
+def _scene(mineral: str = "calcite", tilt_deg: float = 22.0, **camera: float) -> StagedScene:
+    tilt = np.deg2rad(tilt_deg)
+    scene = Scene(
+        specimen=Specimen(mineral=mineral, shape=Shape()),
+        camera=Camera(
+            eye_mm=(0.0, -170 * np.sin(tilt), 7 + 170 * np.cos(tilt)),
+            target_mm=(0.0, 0.0, 7.0),
+            up=(0.0, np.cos(tilt), np.sin(tilt)),
+            vfov_deg=14.0,
+            **camera,  # type: ignore[arg-type]
+        ),
+    )
+    return stage(scene).turned(30.0)
+
+
+def _render(scene: StagedScene, quality: Quality, box: tuple[int, int, int, int], seed: int = 0) -> TilePixels:
+    return render_pixels(scene, Illumination(scene), quality, SIZE, box, (seed, 0, 0))
+
+
+def test_same_arguments_same_bits() -> None:
+    scene = _scene()
+    box = (30, 50, 62, 82)
+    first, again = (_render(scene, QUALITIES["standard"], box) for _ in range(2))
+    np.testing.assert_array_equal(first.pixels, again.pixels)
+    assert first.squared_error == again.squared_error
+    assert not np.array_equal(first.pixels, _render(scene, QUALITIES["standard"], box, seed=1).pixels)
+
+
+REFERENCE = Quality("reference", 0.0, (14,), 4, 9.0, 0.1)
+"""196 positions with 784 wavelengths a pixel, textures averaged over 1/14 of it: nine and more times the samples of
+what it judges."""
+
+
+@pytest.mark.parametrize("name", ["draft", "standard", pytest.param("fine", marks=pytest.mark.full)])
+def test_the_promised_error(name: str) -> None:
+    """RMS difference from a converged picture, in linear sRGB with white = 1, is what the quality promises.
+
+    The window holds page, print through the crystal, a side face and edges; the estimate must tell the error within a
+    factor of two.
+    """
+    scene = _scene()
+    box = (16, 36, 80, 84)
+    quality = QUALITIES[name]
+    reference = REFERENCE if name != "fine" else replace(REFERENCE, sides=(28,))
+    converged = _render(scene, reference, box, seed=77).pixels.astype(np.float64)
+    done = _render(scene, quality, box)
+    error = float(np.sqrt(np.mean((done.pixels - converged) ** 2)))
+    estimate = float(np.sqrt(done.squared_error / converged[..., 0].size))
+    print(f"{name}: error {error:.4f}, estimate {estimate:.4f}, promised {quality.target_error}")
+    assert error <= quality.target_error
+    assert error / 2 < estimate < error * 2
+
+
+def test_white_balance() -> None:
+    """A clear crystal under daylight adds no colour of its own beyond its fringes."""
+    pixels = _render(_scene("fluorite"), QUALITIES["standard"], (38, 40, 58, 56)).pixels.astype(np.float64)
+    mean = pixels.mean(axis=(0, 1))
+    np.testing.assert_allclose(mean / mean.mean(), 1.0, atol=0.01)
+
+
+def test_isotropic_rays_agree_with_the_equal_index_limit() -> None:
+    """A uniaxial crystal with n_o = n_e looks as an isotropic one does.
+
+    Two renderers of the same slab: one ray with its coherency matrix, or two modes along one path. They differ only in
+    how polarized light fares at later faces.
+    """
+    from crystal_core.render import tile
+
+    scene = _scene("fluorite")
+    box = (38, 40, 70, 60)
+    quality = Quality("plain", 0.0, (4,), 4, 9.0, 0.02)
+    isotropic = _render(scene, quality, box).pixels.astype(np.float64)
+    as_uniaxial = scene.specimen.mineral.model_copy(
+        update={
+            "optical_class": "uniaxial",
+            "dispersion": dict.fromkeys(("o", "e"), scene.specimen.mineral.dispersion["n"]),
+        }
+    )
+    limit = replace(scene, specimen=replace(scene.specimen, mineral=as_uniaxial))
+    assert not limit.specimen.is_isotropic
+    assert tile._events(limit.specimen, np.array((550.0,))).modes == 2
+    uniaxial = _render(limit, quality, box).pixels.astype(np.float64)
+    assert np.abs(isotropic.mean(axis=(0, 1)) - uniaxial.mean(axis=(0, 1))).max() < 2e-3
+    assert np.sqrt(np.mean((isotropic - uniaxial) ** 2)) < 0.02
+
+
+def test_point_light_and_sky_on_the_bare_page() -> None:
+    """Inverse square and cosine, h/r³, against the closed form; the sky adds its share everywhere."""
+    light = (-60.0, 80.0, 200.0)
+    camera = Camera(eye_mm=(0, 0, 300), target_mm=(0, 0, 0), up=(0, 1, 0), vfov_deg=20)
+    scene = stage(
+        Scene(specimen=Specimen(), light=PointLight(position_mm=light), sky=Sky(fraction=0.25), camera=camera)
+    )
+    x, y = np.array((100.0, -80.0, 60.0)), np.array((-90.0, 70.0, 120.0))  # none in the shadow
+    r2 = (x - light[0]) ** 2 + (y - light[1]) ** 2 + light[2] ** 2
+    centre = light[2] / (light[0] ** 2 + light[1] ** 2 + light[2] ** 2) ** 1.5
+    expected = 0.75 * (light[2] / r2**1.5) / centre + 0.25
+    np.testing.assert_allclose(Illumination(scene).at(x, y), expected, rtol=1e-12)
+
+
+def test_shadow_and_light_through_the_block() -> None:
+    """Under the block the light is dimmed as by a plate; beside it, away from the light, it is blocked."""
+    camera = Camera(eye_mm=(0, 0, 300), target_mm=(0, 0, 0), up=(0, 1, 0), vfov_deg=20)
+    light = PointLight(position_mm=(-100.0, 0.0, 400.0))
+    scene = stage(Scene(specimen=Specimen(), light=light, sky=Sky(fraction=0.0), camera=camera))
+    illumination = Illumination(scene)
+    under, beside, clear = illumination.at(np.array((0.0, 12.5, -13.0)), np.zeros(3))
+    assert under == pytest.approx(0.89, abs=0.02)  # 2n/(n²+1) for n about 1.57, slightly less on a slant
+    assert beside == 0.0
+    assert clear > 0.99
+
+
+def test_positions_tile_the_pixel() -> None:
+    for side in (2, 4, 8):
+        samples = passes(side, 4, seed=5)
+        cells = {(int(sample.x * side), int(sample.y * side)) for sample in samples}
+        assert len(cells) == side * side == len(samples)
+        assert sum(sample.half for sample in samples) == side * side // 2
+        nm = np.concatenate([sample.wavelengths.wavelength_nm for sample in samples])
+        assert np.unique(nm).size == 4 * side * side
