@@ -1,13 +1,14 @@
 """Draw the pictures of docs/conventions.md: the frames, and the waves at a face.
 
-    python tools/draw_conventions.py
+    python tools/draw_conventions.py [FOLDER]
 
-writes docs/pictures/frames.svg and docs/pictures/waves.svg. What can be computed is: the waves of the second picture
-are those of `crystal_core.optics` for calcite.
+writes frames.svg and waves.svg, into docs/pictures if no folder is given. What can be computed is: the waves of the
+second picture are those of `crystal_core.optics` for calcite.
 """
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -335,6 +336,6 @@ def _rectangle(x: float, y: float, width: float, height: float) -> Real:
 
 
 if __name__ == "__main__":
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    frames().save(PICTURES / "frames.svg")
-    waves().save(PICTURES / "waves.svg")
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PICTURES
+    frames().save(folder / "frames.svg")
+    waves().save(folder / "waves.svg")

@@ -1,0 +1,37 @@
+"""Render the pictures of the docs by the commands that stand in them.
+
+    python tools/make_pictures.py
+
+runs the installed command `isogyre` and copies what it makes to docs/pictures.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PICTURES = Path(__file__).resolve().parent.parent / "docs" / "pictures"
+
+RENDERED = {
+    # The picture of README.md, by the command that stands there.
+    "rotating-calcite.webp": ("--frames 24 --size 360x360", "sequence.webp"),
+    # That of docs/tour.md: the same bits as the program's.
+    "tour.png": ("--set first_angle_deg=40 --frames 1 --size 320x320", "frame-0000.png"),
+}
+"""Options of ``isogyre render rotating-calcite``, and which of its files is the picture."""
+
+
+def main() -> None:
+    """Render and copy every picture."""
+    command = Path(sys.executable).with_name("isogyre")
+    for name, (options, file) in RENDERED.items():
+        with tempfile.TemporaryDirectory() as out:
+            subprocess.run([command, "render", "rotating-calcite", *options.split(), "--out", out], check=True)
+            shutil.copyfile(Path(out) / file, PICTURES / name)
+
+
+if __name__ == "__main__":
+    main()
