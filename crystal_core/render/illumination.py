@@ -51,6 +51,11 @@ class Illumination:
         x, y = np.tile(across, CELLS + 1), np.repeat(upward, CELLS + 1)
         self._grid = self._bare(x, y) * (1.0 - self._sky) * self._through(x, y) + self._sky
 
+    @property
+    def mean(self) -> float:
+        """Mean illuminance near the specimen."""
+        return float(self._grid.mean())
+
     def at(self, x: Real, y: Real) -> Real:
         """Return the illuminance at points of the page, in mm, shape (N,); 1 at the centre of the bare page."""
         column = (x - self._low[0]) * (1.0 / self._step[0])

@@ -36,6 +36,7 @@ class IsotropicEvents:
         self._body = specimen.body
         self._normals = face_normals(specimen)
         self._medium = medium
+        self.lossless = medium.absorption_per_mm is None
         self._colours = medium.indices[0].size
 
     def enter(self, arrivals: Arrivals, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:

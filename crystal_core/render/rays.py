@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -88,6 +89,10 @@ class Pool:
         if len(rays):
             self._waiting.append(rays)
             self._count += len(rays)
+
+    def __iter__(self) -> Iterator[InsideRays]:
+        """Iterate over the batches that wait."""
+        return iter(self._waiting)
 
     def __len__(self) -> int:
         """Return the number of rays that wait."""

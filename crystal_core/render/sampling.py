@@ -20,25 +20,38 @@ class Pass:
 
     Parameters
     ----------
-    x, y : float
-        Position in the pixel, in [0, 1), from its left and top edge.
+    column, row : int
+        Cell of the position in pixel (0, 0), of `side` × `side` cells.
+    side : int
+        Cells a side.
     wavelengths : WavelengthSet
         Wavelengths and weights.
     half : int
-        0 or 1: the colour of the position's cell on a chessboard; the difference of the two halves estimates the error.
+        0 or 1: the colour of that cell on a chessboard; the difference of the two halves estimates the error.
     """
 
-    x: float
-    y: float
+    column: int
+    row: int
+    side: int
     wavelengths: WavelengthSet
     half: int
+
+    def positions(self, across: Real, down: Real) -> tuple[Real, Real]:
+        """Return the position in pixels of columns `across` and rows `down`, in pixels from the picture's top left.
+
+        From pixel to pixel the pass moves on by a cell: side × side neighbours see each of their cells in each pass's
+        wavelengths once. One cell for all pixels would shift the colours of a picture against each other.
+        """
+        x = (self.column + across) % self.side
+        y = (self.row + down) % self.side
+        return across + (x + 0.5) / self.side, down + (y + 0.5) / self.side
 
 
 def passes(side: int, wavelengths: int, seed: int) -> tuple[Pass, ...]:
     """Return the passes of a level: the centres of the side × side cells of a pixel.
 
     Textures are averaged over just such a cell, so the positions tile the pixel and see each bit of print once; no
-    random offset, so a smooth picture stays smooth. The same in every pixel.
+    random offset, so a smooth picture stays smooth.
 
     Parameters
     ----------
@@ -47,16 +60,13 @@ def passes(side: int, wavelengths: int, seed: int) -> tuple[Pass, ...]:
     wavelengths : int
         Per position; the sets of all positions interleave.
     seed : int
-        Deals the sets of wavelengths out to the positions.
+        Deals the sets of wavelengths out to the cells.
     """
     count = side * side
     sets = stratified_wavelengths(count, wavelengths)
     random = np.random.Generator(np.random.Philox(key=np.array((seed, 1), np.uint64), counter=(0, side, 0, 0)))
     dealt = random.permutation(count)
-    return tuple(
-        Pass((i % side + 0.5) / side, (i // side + 0.5) / side, sets[dealt[i]], (i % side + i // side) & 1)
-        for i in range(count)
-    )
+    return tuple(Pass(i % side, i // side, side, sets[dealt[i]], (i % side + i // side) & 1) for i in range(count))
 
 
 def random_numbers(seed: int, frame: int, tile: int, level: int) -> np.random.Generator:

@@ -19,6 +19,8 @@ Index = NDArray[np.intp]
 class Surroundings:
     """Radiance, relative to D65 and times the exposure, along rays in air.
 
+    `sky` is that of the sky, `usual` that of the page near the specimen, on the average.
+
     Parameters
     ----------
     scene : StagedScene
@@ -43,6 +45,7 @@ class Surroundings:
         self._half_width = 0.5 * scene.page.texture.width_mm
         self._half_height = 0.5 * scene.page.texture.height_mm
         self.sky = scene.sky_fraction * scene.exposure
+        self.usual = float(scene.page.texture.mean * illumination.mean) * scene.exposure
 
     def radiance(self, point: Real, direction: Real, colour: Index) -> Real:
         """Return the radiance each ray sees, shape (N,).

@@ -7,22 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crystal_core.optics import Coherency, Medium, transverse_frame
-from crystal_core.optics.arrays import columns, dot
 from crystal_core.render.illumination import Illumination
-from crystal_core.render.isotropic_events import IsotropicEvents
+from crystal_core.render.level import Level
 from crystal_core.render.quality import Quality
-from crystal_core.render.rays import BATCH
-from crystal_core.render.sampling import passes, random_numbers
-from crystal_core.render.surroundings import Surroundings
-from crystal_core.render.tracer import Arrivals, Events, Roulette, Stopwatch, Tracer
-from crystal_core.render.uniaxial_events import UniaxialEvents
-from crystal_core.scene import StagedScene, StagedSpecimen
+from crystal_core.render.sampling import random_numbers
+from crystal_core.render.tracer import Roulette, Stopwatch
+from crystal_core.scene import StagedScene
 
 __all__ = ["TilePixels", "render_pixels"]
-
-Real = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -81,10 +73,9 @@ def render_pixels(
     error = np.zeros(count)
     chosen = np.arange(count)
     events = 0
-    whole = 1.0 if scene.camera.analyser is None else 0.5  # importance of a pixel: see _importance
     for level, side in enumerate(quality.sides):
-        roulette = Roulette(quality.roulette_below * whole, random_numbers(*key, level))
-        seen = _Level(scene, illumination, size, side, quality.wavelengths, key[0], watch).render(
+        roulette = Roulette(quality.roulette_below, random_numbers(*key, level))
+        seen = Level(scene, illumination, size, side, quality.wavelengths, key[0], watch).render(
             across[chosen], down[chosen], roulette
         )
         events += seen.events
@@ -97,147 +88,3 @@ def render_pixels(
             break
     pixels = np.ascontiguousarray((total / samples).T, np.float32).reshape(y1 - y0, x1 - x0, 3)
     return TilePixels(pixels, float(np.sum(error**2)), watch.seconds, events)
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """What a level's passes saw: sums of linear sRGB (3, N), estimated errors (N,), and where faces differ (N,)."""
-
-    total: Real
-    error: Real
-    edge: NDArray[np.bool_]
-    events: int
-
-
-class _Level:
-    """The passes of one level over a set of pixels, traced together so that batches stay full."""
-
-    def __init__(
-        self,
-        scene: StagedScene,
-        illumination: Illumination,
-        size: tuple[int, int],
-        side: int,
-        wavelengths: int,
-        seed: int,
-        watch: Stopwatch,
-    ) -> None:
-        self._scene = scene
-        self._size = size
-        self._samples = passes(side, wavelengths, seed)
-        self._watch = watch
-        self._wavelength_nm = np.concatenate([sample.wavelengths.wavelength_nm for sample in self._samples])
-        footprint_mm = _pixel_on_page_mm(scene, size) / side
-        weights = np.concatenate([sample.wavelengths.weights for sample in self._samples]) / len(self._samples)
-        self._surroundings = Surroundings(scene, illumination, self._wavelength_nm, weights, footprint_mm)
-
-    def render(self, across: Real, down: Real, roulette: Roulette) -> _Seen:
-        """Return what the passes see in the pixels of columns `across` and rows `down`, shape (N,)."""
-        colours = self._wavelength_nm.size
-        tracer = Tracer(
-            _events(self._scene.specimen, self._wavelength_nm),
-            self._surroundings,
-            colours,
-            across.size * colours,
-            roulette,
-            self._watch,
-        )
-        direct, through = np.zeros((2, 3, across.size)), np.zeros((2, 3, across.size))
-        faces = np.empty((len(self._samples), across.size), np.int32)
-        first = 0
-        for number, sample in enumerate(self._samples):
-            self._watch.restart()
-            direction = _directions(self._scene, self._size, across + sample.x, down + sample.y)
-            importance = _importance(self._scene, direction)
-            eye = self._scene.camera.eye[:, None]
-            face = faces[number]
-            face[:] = self._scene.specimen.finder.first_face(np.broadcast_to(eye, direction.shape), direction)
-            self._watch.stop("camera")
-            missed = np.flatnonzero(face < 0)
-            # A ray that meets no crystal sees all wavelengths along one path.
-            direct[sample.half][:, missed] += importance.intensity()[missed] * self._surroundings.linear_srgb(
-                np.broadcast_to(eye, (3, missed.size)), columns(direction, missed)
-            )
-            self._watch.stop("page")
-            met = np.flatnonzero(face >= 0)
-            count = sample.wavelengths.wavelength_nm.size
-            step = max(1, BATCH // count)
-            for start in range(0, met.size, step):
-                pixels = met[start : start + step]
-                tracer.arrive(self._arrivals(pixels, direction, face, importance, first, count))
-            first += count
-        radiance = tracer.finish().reshape(across.size, colours)
-        self._watch.restart()
-        white = np.zeros((2, 3))
-        first = 0
-        for sample in self._samples:
-            for weights in sample.wavelengths.weights:
-                white[sample.half] += weights
-                for channel in range(3):
-                    through[sample.half][channel] += weights[channel] * radiance[:, first]
-                first += 1
-        # Each half has its own wavelengths, whose weights alone do not add up to white: level that before comparing.
-        positions = 0.5 * len(self._samples)
-        means = direct / positions + through / white[:, :, None]
-        error = np.sqrt(np.mean((0.5 * (means[0] - means[1])) ** 2, axis=0))
-        total = direct[0] + direct[1] + through[0] + through[1]
-        return _Seen(total, error, np.any(faces != faces[0], axis=0), tracer.events_done)
-
-    def _arrivals(
-        self, pixels: Index, direction: Real, face: NDArray[np.int32], importance: Coherency, first: int, count: int
-    ) -> Arrivals:
-        """Return the rays of some pixels at the faces they meet, one for each of a pass's wavelengths."""
-        body, eye = self._scene.specimen.body, self._scene.camera.eye[:, None]
-        at = face[pixels].astype(np.intp)
-        normal = columns(body.normals.T, at)
-        ahead = columns(direction, pixels)
-        distance = (body.offsets[at] - dot(eye, normal)) / dot(ahead, normal)
-        colour = np.tile(np.arange(first, first + count), pixels.size)
-        ray = np.repeat(pixels, count)
-        return Arrivals(
-            np.repeat(eye + distance * ahead, count, axis=1),
-            columns(direction, ray),
-            face[ray].astype(np.intp),
-            importance.take(ray),
-            ray * self._wavelength_nm.size + colour,
-            colour,
-        )
-
-
-def _pixel_on_page_mm(scene: StagedScene, size: tuple[int, int]) -> float:
-    """Return the side of a pixel's square on the page at the centre of the picture, measured across the line of sight.
-
-    The same for all rays: plane faces keep angles, and where the true footprint is wider (a slanted page, a long way
-    inside), the narrower one costs noise, never sharpness.
-    """
-    camera = scene.camera
-    reach = camera.eye[2] / max(-camera.forward[2], 0.05)
-    return float(reach * 2.0 * camera.tan_half / size[1])
-
-
-def _directions(scene: StagedScene, size: tuple[int, int], x: Real, y: Real) -> Real:
-    """Return unit directions through points of the picture, in pixels from its top left corner, shape (3, N)."""
-    camera = scene.camera
-    width, height = size
-    across = camera.tan_half * (2.0 * x / width - 1.0) * (width / height)
-    upward = camera.tan_half * (1.0 - 2.0 * y / height)
-    direction = camera.forward[:, None] + camera.right[:, None] * across + camera.up[:, None] * upward
-    return np.asarray(direction / np.sqrt(dot(direction, direction)), np.float64)
-
-
-def _importance(scene: StagedScene, direction: Real) -> Coherency:
-    """Return what the camera measures, per unit of unpolarized radiance: trace 1, or ½ behind an analyser."""
-    if scene.camera.analyser is None:
-        return Coherency.unpolarized(np.ones(direction.shape[1]))
-    axis = scene.camera.analyser[:, None]
-    along = axis - dot(axis, direction) * direction
-    along = along / np.sqrt(dot(along, along))
-    x, y = transverse_frame(direction)
-    return Coherency.pure(dot(along, x), dot(along, y), np.full(direction.shape[1], 0.5))
-
-
-def _events(specimen: StagedSpecimen, wavelength_nm: Real) -> Events:
-    indices = specimen.indices(wavelength_nm)
-    if specimen.is_isotropic:
-        return IsotropicEvents(specimen, Medium.isotropic(indices[0]))
-    return UniaxialEvents(specimen, Medium.uniaxial(indices[0], indices[1], specimen.axis))

@@ -27,11 +27,17 @@ Index = NDArray[np.intp]
 AIR = Medium.isotropic(1.0)
 
 MAX_DEPTH = 32
-"""Faces after which a branch goes on only by roulette, however heavy it is: light trapped by total reflection."""
+"""Faces after which every branch, however heavy, comes under roulette: light trapped by total reflection."""
 
 SURVIVAL_BEYOND = 0.95
-"""Chance per face that a branch deeper than `MAX_DEPTH` goes on. Light trapped in a calcite block loses about 5 % of
-its energy per face; a smaller chance would make survivors heavier from face to face, and a few of them very bright."""
+"""Chance per face of those branches: light trapped in a calcite block loses about as much of its energy."""
+
+FEW = 1 / 64
+"""Rays left, as a part of those that arrived, when they go to the wheel together: they would take a hundred faces more
+in ever smaller batches, each of which costs numpy as much as a batch of some thousand rays."""
+
+CHANCE_OF_FEW = 0.125
+"""Chance that they all go on, with weights made up for it. They carry a few thousandths of the tile's light."""
 
 
 @dataclass(slots=True)
@@ -113,14 +119,11 @@ class Roulette:
         """
         drawn = self.random.random(depth.size)
         scale = 1.0 / self.below
-        deep = depth >= MAX_DEPTH
-        any_deep = bool(deep.any())
+        survival = np.where(depth >= MAX_DEPTH, SURVIVAL_BEYOND, 1.0)
         before: Real = np.zeros(depth.size)
         result = []
         for importance in importances:
-            chance = np.minimum(importance * scale, 1.0)
-            if any_deep:
-                chance = np.where(deep, SURVIVAL_BEYOND * chance, chance)
+            chance = np.minimum(importance * scale, 1.0) * survival
             after = before + chance
             # Does one of the points drawn, drawn + 1, … lie in [before, after)?
             kept = np.flatnonzero(np.floor(after - drawn) > np.floor(before - drawn))
@@ -150,6 +153,9 @@ class Stopwatch:
 class Events(Protocol):
     """What happens at the faces of one kind of crystal."""
 
+    lossless: bool
+    """Whether the crystal absorbs nothing."""
+
     modes: int
     """Number of kinds of rays inside, each with its pool."""
 
@@ -164,6 +170,10 @@ class Events(Protocol):
 
 class Tracer:
     """Traces the arrivals of a level's passes together and adds up what they see.
+
+    In a lossless crystal the importance that arrives is the importance that leaves, whichever way, so a radiance that
+    is the same everywhere needs no tracing. The usual radiance of the surroundings is therefore added whole at arrival,
+    and only what is seen more or less than it is traced (a control variate): what roulette takes or gives weighs less.
 
     Parameters
     ----------
@@ -181,6 +191,7 @@ class Tracer:
         self, events: Events, surroundings: Surroundings, colours: int, lanes: int, roulette: Roulette, watch: Stopwatch
     ) -> None:
         self.events_done = 0
+        self._arrived = 0
         self._radiance = np.zeros(lanes)
         self._seen: list[tuple[Index, Real]] = []
         self._seen_count = 0
@@ -189,31 +200,43 @@ class Tracer:
         self._colours = colours
         self._roulette = roulette
         self._watch = watch
+        self._usual = surroundings.usual if events.lossless else 0.0
         self._pools = tuple(Pool() for _ in range(events.modes))
 
     def arrive(self, arrivals: Arrivals) -> None:
         """Take rays in; call `finish` after the last."""
         self._watch.restart()
+        self._arrived += arrivals.lane.size
+        if self._usual:
+            self._seen.append((arrivals.lane, self._usual * arrivals.importance.intensity()))
         leaving, inside = self._events.enter(arrivals, self._roulette)
         self._settle(arrivals.lane.size, leaving, inside)
-        self._drain(BATCH)
+        self._drain(len(self._pools) * BATCH)
 
     def finish(self) -> Real:
         """Trace what still waits; return the radiance of each lane."""
-        self._drain(1)
+        self._drain(1 + int(FEW * self._arrived))
+        if self._roulette.random.random() < CHANCE_OF_FEW:
+            self._make_up_for(CHANCE_OF_FEW)
+            self._drain(1)
         self._add_up()
         return self._radiance
 
     def _drain(self, least: int) -> None:
-        """Work while any pool holds `least` rays."""
-        while True:
+        """Work while `least` rays wait."""
+        while sum(len(pool) for pool in self._pools) >= least:
             mode = max(range(len(self._pools)), key=lambda m: len(self._pools[m]))
-            if len(self._pools[mode]) < least:
-                return
             self._watch.restart()
             rays = self._pools[mode].pop()
             leaving, inside = self._events.leave(rays, mode, self._roulette)
             self._settle(len(rays), leaving, inside)
+
+    def _make_up_for(self, chance: float) -> None:
+        """Make the rays that wait, and what roulette takes for heavy, heavier by 1/chance."""
+        for pool in self._pools:
+            for rays in pool:
+                rays.importance[:] /= chance
+        self._roulette.below /= chance
 
     def _settle(self, count: int, leaving: Leaving, inside: list[InsideRays]) -> None:
         self._watch.stop("interfaces")
@@ -221,7 +244,8 @@ class Tracer:
         for pool, rays in zip(self._pools, inside, strict=True):
             pool.push(rays)
         colour = leaving.lane % self._colours
-        seen = leaving.importance * self._surroundings.radiance(leaving.point, leaving.direction, colour)
+        radiance = self._surroundings.radiance(leaving.point, leaving.direction, colour)
+        seen = leaving.importance * (radiance - self._usual)
         self._seen.append((leaving.lane, seen))
         self._seen_count += seen.size
         if self._seen_count > self._radiance.size:

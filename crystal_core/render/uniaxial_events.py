@@ -42,6 +42,7 @@ class UniaxialEvents:
         self._body = specimen.body
         self._normals = face_normals(specimen)
         self._medium = medium
+        self.lossless = medium.absorption_per_mm is None
         self._colours = medium.indices[0].size
 
     def enter(self, arrivals: Arrivals, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import warnings
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -110,6 +111,11 @@ class Texture:
     def channels(self) -> int:
         """1 for a grey texture, 3 for linear sRGB."""
         return int(self.texels.shape[2])
+
+    @cached_property
+    def mean(self) -> float:
+        """Mean reflectance over the rectangle and its channels."""
+        return float(self.texels.mean(dtype=np.float64))
 
     def average(self, x: Real, y: Real, width_mm: float) -> Real:
         """Return the mean reflectance over axis-parallel squares, shape (channels, N); points outside take the rim's.

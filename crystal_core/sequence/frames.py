@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from crystal_core.render import QUALITIES, Illumination, keep_freed_memory, render_pixels
+from crystal_core.render import QUALITIES, Illumination, Quality, keep_freed_memory, render_pixels, tuned_quality
 from crystal_core.scene import Scene, StagedScene, stage
 from crystal_core.sequence.request import RenderRequest
 
@@ -98,12 +98,12 @@ def render_tile(request: RenderRequest, frame: int, tile: int, assets: Path | No
     """
     started = perf_counter()
     keep_freed_memory()
-    scene, illumination = _staged_frame(request.parameters.scene(), assets, frame_angle_deg(request, frame))
+    scene, illumination, quality = _staged_frame(request, frame, assets)
     place = tile_grid(request)[tile]
     done = render_pixels(
         scene,
         illumination,
-        QUALITIES[request.quality],
+        quality,
         request.size,
         (place.x0, place.y0, place.x1, place.y1),
         (request.seed, frame, tile),
@@ -141,7 +141,9 @@ def _staged(scene: Scene, assets: Path | None) -> StagedScene:
 
 
 @lru_cache(maxsize=3)
-def _staged_frame(scene: Scene, assets: Path | None, angle_deg: float) -> tuple[StagedScene, Illumination]:
+def _staged_frame(request: RenderRequest, frame: int, assets: Path | None) -> tuple[StagedScene, Illumination, Quality]:
     """Stage one frame, once per process: its tiles share it."""
-    turned = _staged(scene, assets).turned(angle_deg)
-    return turned, Illumination(turned)
+    turned = _staged(request.parameters.scene(), assets).turned(frame_angle_deg(request, frame))
+    illumination = Illumination(turned)
+    quality = QUALITIES[request.quality]
+    return turned, illumination, tuned_quality(turned, illumination, quality, request.size, (request.seed, frame))

@@ -44,6 +44,7 @@ class RotatingCalcite(Parameters):
         "/specimen/shape/cut": "cut",
         "/page/texture": "texture",
         "/page/marks_mm": "marks",
+        "/page/mark_diameter_mm": "mark_diameter_mm",
         "/camera": "camera_distance_mm",
         "/light": "light_position_mm",
         "/shape": "size_mm",
@@ -62,7 +63,7 @@ class RotatingCalcite(Parameters):
         json_schema_extra=_extra("Cut", "Форма", SPECIMEN),
     )
     size_mm: tuple[Side, Side, Side] = Field(
-        (22.0, 22.0, 14.0),
+        (22.0, 22.0, 12.0),
         title="Size",
         description="Edges of the block, or distances between the pairs of cleavage faces; the last is the thickness.",
         json_schema_extra=_extra("Size", "Размеры", SPECIMEN, "mm"),
@@ -129,7 +130,7 @@ class RotatingCalcite(Parameters):
         json_schema_extra=_extra("Mark diameter", "Диаметр метки", PAGE, "mm"),
     )
     camera_tilt_deg: float = Field(
-        22.0,
+        15.0,
         ge=0,
         le=75,
         title="Tilt of the camera",
@@ -145,7 +146,7 @@ class RotatingCalcite(Parameters):
         json_schema_extra=_extra("Camera distance", "Расстояние камеры", CAMERA, "mm"),
     )
     vfov_deg: float = Field(
-        14.0,
+        16.0,
         ge=0.05,
         le=90,
         title="Field of view",

