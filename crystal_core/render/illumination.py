@@ -40,8 +40,6 @@ class Illumination:
         self._mean_index = float(np.mean(scene.specimen.indices(effective_wavelength_nm())))
         # Corners cast from the light onto the page, and the body's own outline, bound that rectangle.
         spokes = self._body.vertices - self._light
-        if not (spokes[:, 2] < 0).all():
-            raise ValueError("the light must stand higher than the specimen")
         cast = self._light + spokes * (self._light[2] / -spokes[:, 2])[:, None]
         outline = np.concatenate((cast[:, :2], self._body.vertices[:, :2]))
         self._low, self._high = outline.min(axis=0), outline.max(axis=0)

@@ -20,11 +20,8 @@ PIXELS = 400
 PLASTIC = 1.32471795724474602596
 """Root of x³ = x + 1: its powers spread points evenly over a square (M. Roberts, R2 sequence, 2018)."""
 
-SHARE_OF_ERROR = 0.8
-"""Part of the squared error promised that the pilot may use up; its own chance needs the rest."""
-
 GROWTH_EXPONENT = 1.2
-"""The squared error grows with the roulette's threshold at least by about this power (top and side faces of calcite)."""
+"""The squared error grows with the roulette's threshold by at least about this power, on all faces of calcite."""
 
 LOWEST = 0.02
 
@@ -62,13 +59,15 @@ def tuned_quality(
     roulette = Roulette(quality.roulette_below, random_numbers(seed, frame, 0, PILOT_LEVEL))
     seen = level.render(across, down, roulette)
     squared = np.sort(seen.error**2)[::-1]
-    allowed = SHARE_OF_ERROR * quality.target_error**2 * PIXELS
+    # The estimate takes the print that two halves of a pixel see for error, which it is not: that is the reserve.
+    allowed = PIXELS * quality.target_error**2
     if len(quality.sides) == 1:
-        lower = allowed / squared.sum()
+        lower = allowed / float(squared.sum())
         return quality if lower >= 1 else replace(quality, roulette_below=_lowered(quality, lower))
     # Squared error of the frame if its n worst pixels go on to the next level, for every n.
     gain = 1.0 + (quality.sides[1] / quality.sides[0]) ** 2
-    left = squared.sum() - np.concatenate(((0.0,), np.cumsum(squared))) * (1.0 - 1.0 / gain)
+    total = float(squared.sum())
+    left = total - np.concatenate(((0.0,), np.cumsum(squared))) * (1.0 - 1.0 / gain)
     planned = int(np.count_nonzero(seen.edge | (seen.error > quality.refine_above)))
     if left[planned] <= allowed:
         return quality
@@ -83,4 +82,5 @@ def tuned_quality(
 
 def _lowered(quality: Quality, factor: float) -> float:
     """Return the roulette's threshold that makes the squared error about `factor` times what it is."""
-    return max(quality.roulette_below * factor ** (1.0 / GROWTH_EXPONENT), LOWEST)
+    below: float = quality.roulette_below * factor ** (1.0 / GROWTH_EXPONENT)
+    return max(below, LOWEST)

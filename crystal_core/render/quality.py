@@ -41,7 +41,7 @@ class Quality:
 QUALITIES: Mapping[str, Quality] = MappingProxyType(
     {
         "draft": Quality("draft", 0.06, (2,), 2, 1.0, 0.2),
-        "standard": Quality("standard", 0.015, (2, 4), 4, 0.08, 0.2),
+        "standard": Quality("standard", 0.015, (2, 4), 4, 0.1, 0.25),
         "fine": Quality("fine", 0.004, (4, 8), 8, 0.006, 0.03),
     }
 )

@@ -114,11 +114,12 @@ def stage(scene: Scene, assets: Path | None = None) -> StagedScene:
     specimen = _specimen(scene)
     camera = _camera(scene.camera)
     light = np.asarray(scene.light.position_mm)
-    for pointer, name, point in (("/camera/eye_mm", "camera", camera.eye), ("/light/position_mm", "light", light)):
-        if point[2] <= 0:
-            raise InputError.at(pointer, f"the {name} must stand above the page (z > 0)")
-        if np.all(specimen.body.normals @ point <= specimen.body.offsets):
-            raise InputError.at(pointer, f"the {name} stands inside the specimen")
+    if camera.eye[2] <= 0:
+        raise InputError.at("/camera/eye_mm", "the camera must stand above the page (z > 0)")
+    if np.all(specimen.body.normals @ camera.eye <= specimen.body.offsets):
+        raise InputError.at("/camera/eye_mm", "the camera stands inside the specimen")
+    if light[2] <= specimen.body.vertices[:, 2].max():
+        raise InputError.at("/light/position_mm", "the light must stand higher than the specimen")
     return StagedScene(specimen, _page(scene.page, assets), light, scene.sky.fraction, camera, scene.exposure)
 
 
