@@ -17,7 +17,7 @@ PICTURES = Path(__file__).resolve().parent.parent / "docs" / "pictures"
 
 RENDERED = {
     # The picture of README.md, by the command that stands there.
-    "rotating-calcite.webp": ("--frames 24 --size 360x360", "sequence.webp"),
+    "rotating-calcite.webp": ("", "sequence.webp"),
     # That of docs/tour.md: the same bits as the program's.
     "tour.png": ("--set first_angle_deg=40 --frames 1 --size 320x320", "frame-0000.png"),
 }

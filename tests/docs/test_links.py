@@ -48,7 +48,7 @@ def test_pictures_are_shown_and_shown_pictures_are_there() -> None:
 def test_the_command_of_the_picture_stands_in_the_readme() -> None:
     options, file = RENDERED["rotating-calcite.webp"]
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert f"isogyre render rotating-calcite {options} --out " in text
+    assert f"isogyre render {' '.join(('rotating-calcite', *options.split(), '--out'))} " in text
     assert file in text
 
 
