@@ -33,7 +33,7 @@ class Shape(Part):
     """
 
     cut: Literal["block", "cleavage"] = "block"
-    size_mm: tuple[Length, Length, Length] = (22.0, 22.0, 12.0)
+    size_mm: tuple[Length, Length, Length] = (20.0, 20.0, 12.0)
     axis_tilt_deg: Annotated[float, Field(ge=0, le=180)] = 44.64
     axis_azimuth_deg: Angle = 0.0
 

@@ -17,7 +17,7 @@ from crystal_core.sequence.request import RenderRequest
 
 __all__ = ["Frame", "Tile", "TileResult", "assemble", "frame_angle_deg", "render_tile", "tile_grid"]
 
-TILE_SIDE = {"draft": 128, "standard": 64, "fine": 32}
+TILE_SIDE = {"draft": 128, "standard": 96, "fine": 32}
 """Pixels a side, so that the slowest tile takes about half a second: a unit of work cannot be interrupted."""
 
 

@@ -63,7 +63,7 @@ class RotatingCalcite(Parameters):
         json_schema_extra=_extra("Cut", "Форма", SPECIMEN),
     )
     size_mm: tuple[Side, Side, Side] = Field(
-        (22.0, 22.0, 12.0),
+        (20.0, 20.0, 12.0),
         title="Size",
         description="Edges of the block, or distances between the pairs of cleavage faces; the last is the thickness.",
         json_schema_extra=_extra("Size", "Размеры", SPECIMEN, "mm"),

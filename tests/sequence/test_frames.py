@@ -70,7 +70,7 @@ def test_manifest_repeats_the_geometry() -> None:
     told = manifest(request, [record], complete=False)
     assert json.loads(json.dumps(told)) == told
     scene = told["scene"]
-    assert scene["half_size_mm"] == [11.0, 11.0]
+    assert scene["half_size_mm"] == [10.0, 10.0]
     assert (scene["z0_mm"], scene["z1_mm"]) == pytest.approx((0.02, 12.02))
     assert scene["page_z_mm"] == 0.0
     assert scene["marks_mm"] == [[1.0, -2.0]]
