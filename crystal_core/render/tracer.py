@@ -32,12 +32,13 @@ MAX_DEPTH = 32
 SURVIVAL_BEYOND = 0.95
 """Chance per face of those branches: light trapped in a calcite block loses about as much of its energy."""
 
-FEW = 1 / 64
+FEW = 1 / 256
 """Rays left, as a part of those that arrived, when they go to the wheel together: they would take a hundred faces more
 in ever smaller batches, each of which costs numpy as much as a batch of some thousand rays."""
 
-CHANCE_OF_FEW = 0.125
-"""Chance that they all go on, with weights made up for it. They carry a few thousandths of the tile's light."""
+CHANCE_OF_FEW = 0.25
+"""Chance that they all go on, with weights made up for it. They carry a thousandth of the tile's light; much
+heavier ones would show, as specks."""
 
 
 @dataclass(slots=True)
