@@ -127,8 +127,14 @@ class Batch:
 
     def _write(self, index: int, results: Sequence[sequence.TileResult]) -> None:
         frame = sequence.assemble(self.request, results)
-        rgb8, _ = to_srgb8(frame.linear)
-        self.folder.add_frame(index, encode_png(rgb8), seconds=frame.seconds, error_estimate=frame.error_estimate)
+        rgb8, clipped_fraction = to_srgb8(frame.linear)
+        self.folder.add_frame(
+            index,
+            encode_png(rgb8),
+            seconds=frame.seconds,
+            error_estimate=frame.error_estimate,
+            clipped_fraction=clipped_fraction,
+        )
 
 
 class _WrittenFrames(Sequence[NDArray[np.uint8]]):

@@ -74,7 +74,9 @@ class BatchFolder:
         """Indices of the frames that are not there yet."""
         return [index for index in range(self.request.frames) if index not in self._records]
 
-    def add_frame(self, index: int, png: bytes, *, seconds: float, error_estimate: float) -> None:
+    def add_frame(
+        self, index: int, png: bytes, *, seconds: float, error_estimate: float, clipped_fraction: float
+    ) -> None:
         """Write a frame, and a manifest that names it.
 
         Parameters
@@ -87,6 +89,8 @@ class BatchFolder:
             Work it took.
         error_estimate : float
             Estimated RMS error, linear sRGB.
+        clipped_fraction : float
+            Part of the pixels that the gamut rule changed.
 
         Raises
         ------
@@ -101,6 +105,7 @@ class BatchFolder:
             sha256=write_atomically(self.path / name, png),
             seconds=seconds,
             error_estimate=error_estimate,
+            clipped_fraction=clipped_fraction,
         )
         self.write_manifest()
 

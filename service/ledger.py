@@ -213,6 +213,7 @@ class Ledger:
                     angle_deg=frame.angle_deg,
                     error_estimate=frame.error_estimate,
                     seconds=frame.seconds,
+                    clipped_fraction=frame.clipped_fraction,
                 )
             )
             _add_products(connection, run_id, products)
@@ -282,6 +283,7 @@ class Ledger:
                 error_estimate=row["error_estimate"],
                 seconds=row["seconds"],
                 sha256=digests[frame_name(row["index"], "png")],
+                clipped_fraction=row["clipped_fraction"],
             )
             for row in frames
         ]

@@ -57,7 +57,7 @@ def print_frame(
         The disk is full or not writable.
     """
     frame = sequence.assemble(request, results)
-    rgb8, _ = to_srgb8(frame.linear)
+    rgb8, clipped_fraction = to_srgb8(frame.linear)
     png = _keep(store, frame_name(index, "png"), encode_png(rgb8), "image/png")
     webp = _keep(store, frame_name(index, "webp"), encode_webp(rgb8), "image/webp")
     row = FrameRow(
@@ -66,6 +66,7 @@ def print_frame(
         error_estimate=frame.error_estimate,
         seconds=frame.seconds,
         sha256=png.sha256,
+        clipped_fraction=clipped_fraction,
     )
     return row, (png, webp)
 
@@ -115,6 +116,7 @@ def manifest_bytes(request: sequence.RenderRequest, frames: Sequence[FrameRow], 
             sha256=frame.sha256,
             seconds=frame.seconds,
             error_estimate=frame.error_estimate,
+            clipped_fraction=frame.clipped_fraction,
         )
         for frame in frames
     ]

@@ -72,13 +72,14 @@ class UnitRow:
 
 @dataclass(frozen=True, slots=True)
 class FrameRow:
-    """A finished frame; ``sha256`` is that of its PNG file."""
+    """A finished frame; ``sha256`` is that of its PNG file, ``clipped_fraction`` what the gamut rule changed."""
 
     index: int
     angle_deg: float
     error_estimate: float
     seconds: float
     sha256: str
+    clipped_fraction: float
 
 
 @dataclass(frozen=True, slots=True)

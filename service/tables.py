@@ -70,6 +70,7 @@ frame = Table(
     Column("angle_deg", Double, nullable=False),
     Column("error_estimate", Double, nullable=False),
     Column("seconds", Double, nullable=False),
+    Column("clipped_fraction", Double, nullable=False),
     PrimaryKeyConstraint("run_id", "index"),
 )
 

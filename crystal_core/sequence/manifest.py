@@ -19,7 +19,23 @@ __all__ = ["FrameRecord", "manifest"]
 
 @dataclass(frozen=True)
 class FrameRecord:
-    """One finished frame: its file, the sha256 (hex) of the file, seconds of work, estimated RMS error."""
+    """One finished frame.
+
+    Parameters
+    ----------
+    index : int
+        Its place in the sequence.
+    angle_deg : float
+        Stage angle.
+    file, sha256 : str
+        Name of its file, and the file's sha256 (hex).
+    seconds : float
+        Seconds of work, those of all workers together.
+    error_estimate : float
+        Estimated RMS error in linear sRGB, white = 1.
+    clipped_fraction : float
+        Part of the pixels that the gamut rule changed.
+    """
 
     index: int
     angle_deg: float
@@ -27,6 +43,7 @@ class FrameRecord:
     sha256: str
     seconds: float
     error_estimate: float
+    clipped_fraction: float
 
 
 def manifest(request: RenderRequest, frames: Sequence[FrameRecord], complete: bool) -> dict[str, Any]:

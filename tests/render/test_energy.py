@@ -10,6 +10,7 @@ from crystal_core.optics.interface import solve_face
 from crystal_core.optics.modes import FramedMedium
 from crystal_core.render import Illumination, Quality, render_pixels
 from crystal_core.render.illumination import plate_transmittance
+from crystal_core.render.rays import InsideRays
 from crystal_core.render.tracer import AIR, Arrivals, Roulette
 from crystal_core.render.uniaxial_events import UniaxialEvents, _shares
 from crystal_core.scene import Camera, Scene, Shape, Sky, Specimen, StagedScene, stage
@@ -119,3 +120,24 @@ def test_plate_transmittance_at_normal_incidence(n: float) -> None:
     assert plate_transmittance(np.ones(1), n)[0] == pytest.approx(2 * n / (n * n + 1), rel=1e-12)
     grazing = plate_transmittance(np.array((1e-6,)), n)[0]
     assert 0.0 <= grazing < 0.02
+
+
+def test_absorption_follows_beer_and_lambert() -> None:
+    """A ray loses exp(−a·length) of its importance on its way to a face, each mode by its own coefficient."""
+    scene = _uniform("calcite", None)
+    per_mm = (0.05, 0.4)
+    axis = np.array((1.0, 0.0, 0.0))
+    medium = Medium.uniaxial(
+        np.full(1, 1.6584), np.full(1, 1.4864), axis, (np.full(1, per_mm[0]), np.full(1, per_mm[1]))
+    )
+    events = UniaxialEvents(scene.specimen, medium)
+    assert not events.lossless
+    body = scene.specimen.body
+    middle = body.vertices.mean(axis=0)
+    for mode, index in ((0, 1.6584), (1, 1.4864)):
+        up = np.array((0.0, 0.0, 1.0))
+        state = np.concatenate((middle, up, index * up, (1.0,)))[:, None]
+        rays = InsideRays(state, np.zeros(1, np.intp), np.zeros(1, np.int16))
+        leaving, inside = events.leave(rays, mode, Roulette(1e-300, np.random.default_rng(0)))
+        out = leaving.importance.sum() + sum(part.importance.sum() for part in inside)
+        assert out == pytest.approx(np.exp(-per_mm[mode] * 6.0), rel=1e-12)  # 6 mm from the middle to the top

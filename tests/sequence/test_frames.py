@@ -66,7 +66,7 @@ def test_a_frame_at_an_angle_is_the_frame_of_a_sequence() -> None:
 
 def test_manifest_repeats_the_geometry() -> None:
     request = _request(parameters={"marks": [[1.0, -2.0]], "analyser_deg": 30.0})
-    record = FrameRecord(1, 45.0, "frame-0001.png", "0" * 64, 0.5, 0.01)
+    record = FrameRecord(1, 45.0, "frame-0001.png", "0" * 64, 0.5, 0.01, 0.125)
     told = manifest(request, [record], complete=False)
     assert json.loads(json.dumps(told)) == told
     scene = told["scene"]
@@ -87,6 +87,7 @@ def test_manifest_repeats_the_geometry() -> None:
             "sha256": "0" * 64,
             "seconds": 0.5,
             "error_estimate": 0.01,
+            "clipped_fraction": 0.125,
         }
     ]
     assert told["error_estimate"] == 0.01

@@ -82,6 +82,7 @@ class FrameRecord:
     sha256: str
     seconds: float
     error_estimate: float
+    clipped_fraction: float
 
 
 class RenderRequest(BaseModel, frozen=True):

@@ -21,7 +21,8 @@ class StopError(Exception):
 
 def fill(folder: BatchFolder, *indices: int) -> None:
     for index in indices:
-        folder.add_frame(index, f"picture {index}".encode(), seconds=1.5, error_estimate=0.01 * (index + 1))
+        picture = f"picture {index}".encode()
+        folder.add_frame(index, picture, seconds=1.5, error_estimate=0.01 * (index + 1), clipped_fraction=0.25)
 
 
 def make(path: Path, *indices: int, film: bool = False, **changes: Any) -> None:
@@ -60,6 +61,7 @@ def test_the_manifest_follows_every_frame(tmp_path: Path) -> None:
                 "sha256": hashlib.sha256(b"picture 2").hexdigest(),
                 "seconds": 1.5,
                 "error_estimate": 0.03,
+                "clipped_fraction": 0.25,
             }
         ]
         fill(folder, 0)

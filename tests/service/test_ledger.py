@@ -66,7 +66,7 @@ def test_an_ended_run_takes_nothing_more(ledger: Ledger, end: str) -> None:
     product = Product("frame-0000.png", "a" * 64, "image/png", 1)
     assert not ledger.start(run)
     assert not ledger.finish_unit(run, 0, 0, sha256="a" * 64, seconds=0.1)
-    assert not ledger.finish_frame(run, FrameRow(0, 0.0, 0.1, 0.1, "a" * 64), [product])
+    assert not ledger.finish_frame(run, FrameRow(0, 0.0, 0.1, 0.1, "a" * 64, 0.0), [product])
     assert not ledger.succeed(run, [product])
     assert not ledger.fail(run, {"detail": "late"})
     assert ledger.product(run, product.name) is None
@@ -94,7 +94,7 @@ def test_equal_files_of_two_frames_are_one_artifact(ledger: Ledger) -> None:
     job, _ = ledger.submit(REQUEST, "d" * 64, frames=2, tiles=2)
     for index in range(2):
         product = Product(f"frame-{index:04d}.png", "a" * 64, "image/png", 7)
-        assert ledger.finish_frame(job.run.id, FrameRow(index, 180.0 * index, 0.1, 0.1, "a" * 64), [product])
+        assert ledger.finish_frame(job.run.id, FrameRow(index, 180.0 * index, 0.1, 0.1, "a" * 64, 0.0), [product])
     assert [frame.sha256 for frame in ledger.frames(job.run.id)] == ["a" * 64] * 2
 
 
