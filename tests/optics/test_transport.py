@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from crystal_core.optics import Coherency, Medium, interface_frame, transverse_frame
-from crystal_core.optics.interface import Face, solve_face
+from crystal_core.optics import Coherency, Medium, interface_frame, scatter, transverse_frame
+from crystal_core.optics.interface import solve_face
 from crystal_core.optics.modes import FramedMedium
 
 AIR = Medium.isotropic(1.0)
@@ -46,15 +46,14 @@ def test_rotation_is_that_of_the_field() -> None:
 
 
 def test_stokes_signs() -> None:
+    """S3 > 0: the tip of E(t) turns from x to y, counter-clockwise to one who faces the source."""
     one = np.ones(1)
-    # E_y leads by a quarter period in exp(-iωt): the tip turns from y to -x ... seen by one who faces the source,
-    # who has x on his left when y is up, S3 = 2 Im(E_x* E_y) > 0 is counter-clockwise.
+    circular = (one + 0j, 1j * one)
     time = np.linspace(0, 2 * np.pi, 8, endpoint=False)
-    ex, ey = np.exp(-1j * time).real, (1j * np.exp(-1j * time)).real
-    turned = np.sum(ex * np.roll(ey, -1) - ey * np.roll(ex, -1))  # > 0: from x to y, right-handed about propagation
-    s = Coherency.pure(one + 0j, 1j * one, one).stokes()[:, 0]
-    # Facing the source one looks against the propagation, and a right-handed turn about it is counter-clockwise.
-    assert np.sign(s[3]) == np.sign(turned)
+    ex, ey = ((component * np.exp(-1j * time)).real for component in circular)
+    turns_from_x_to_y = np.sum(ex * np.roll(ey, -1) - ey * np.roll(ex, -1)) > 0
+    assert turns_from_x_to_y
+    np.testing.assert_allclose(Coherency.pure(*circular, one).stokes()[:, 0], (2, 0, 0, 2))
     np.testing.assert_allclose(Coherency.pure(one, 0 * one, one).stokes()[:, 0], (1, 1, 0, 0))
     np.testing.assert_allclose(Coherency.pure(one, one, 0.5 * one).stokes()[:, 0], (1, 0, 1, 0))
 
@@ -67,69 +66,92 @@ def test_power_into_is_the_quadratic_form() -> None:
     np.testing.assert_allclose(c.power_into(j[0], j[1]), expected, rtol=1e-12)
 
 
-def _jones(face: Face, source: int) -> np.ndarray:
-    """Return flux-normalised amplitudes (N, 2, 2) into the two transmitted modes; source ±1 unused sign kept real."""
-    del source
-    columns = []
-    for j in (0, 1):
-        t = face.transmission(j)
-        flux = face.incident[j].flux()
-        columns.append([t[i] * np.sqrt(face.transmitted[i].flux() / flux) for i in (0, 1)])
-    return np.moveaxis(np.array(columns), -1, 0).swapaxes(1, 2)
-
-
 def _crystal(rng: np.random.Generator) -> Medium:
     return Medium.uniaxial(rng.uniform(1.3, 2.0, COUNT), rng.uniform(1.3, 2.0, COUNT), _unit(rng, COUNT))
 
 
-def _entry_and_exit(seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return J into a crystal and J of the reversed path out of it, for random crystals and directions."""
-    rng = np.random.default_rng(seed)
-    crystal, z = _crystal(rng), _unit(rng, COUNT)
-    d = _unit(rng, COUNT)
-    d = d * np.sign(np.sum(d * z, axis=0))
-    kt = d - np.sum(d * z, axis=0) * z
-    forward = solve_face(
-        FramedMedium(AIR, interface_frame(z, kt)), FramedMedium(crystal, interface_frame(z, kt)), False, False
-    )
-    # The reversed path: the waves -k come from the crystal; the frame's z and x turn round, y = z × x stays.
-    back = interface_frame(-z, -kt)
-    backward = solve_face(FramedMedium(crystal, back), FramedMedium(AIR, back), False, False)
-    return _jones(forward, 1), _jones(backward, -1)
+def _facing(z: np.ndarray, v: np.ndarray) -> np.ndarray:
+    return z * np.sign(np.sum(z * v, axis=0))
 
 
-def test_reciprocity_of_an_entry() -> None:
-    """J of the reversed path is the transpose, up to the sign with which each mode's field is written."""
-    forward, backward = _entry_and_exit(3)
-    np.testing.assert_allclose(np.abs(backward), np.abs(np.swapaxes(forward, 1, 2)), atol=1e-12)
-    # Signs: products around a loop of two entries and two exits are free of them.
-    loop_f = forward[:, 0, 0] * forward[:, 1, 1] * np.conj(forward[:, 0, 1] * forward[:, 1, 0])
-    loop_b = backward[:, 0, 0] * backward[:, 1, 1] * np.conj(backward[:, 1, 0] * backward[:, 0, 1])
-    np.testing.assert_allclose(loop_b, loop_f, atol=1e-12)
+def _tangential(k: np.ndarray, z: np.ndarray) -> np.ndarray:
+    return k - np.sum(k * z, axis=0) * z
 
 
-def test_a_path_gives_the_same_number_from_either_end() -> None:
-    """tr(W · J C J†) = tr(J† W J · C), J a whole path: in, total reflection with o-e conversion, out."""
+class Path:
+    """Air → one mode of a crystal → air, over random crystals, faces and directions, as the renderer goes it."""
+
+    def __init__(self, seed: int, mode: int) -> None:
+        rng = np.random.default_rng(seed)
+        self.mode = mode
+        self.crystal = _crystal(rng)
+        self.d = _unit(rng, COUNT)
+        self.z_in = _facing(_unit(rng, COUNT), self.d)
+        wave = scatter(self.z_in, _tangential(self.d, self.z_in), AIR, self.crystal).transmitted[mode]
+        self.k = wave.k
+        # A face that the ray meets and that it can leave by: |k| < 2, so 0.2 rad or less from k lets it out.
+        self.z_out = self.k + 0.2 * np.sqrt(np.sum(self.k**2, axis=0)) * _unit(rng, COUNT)
+        self.z_out /= np.sqrt(np.sum(self.z_out**2, axis=0))
+
+    def enter(self, d: np.ndarray, z: np.ndarray, c: Coherency) -> np.ndarray:
+        """Return the power that enters the mode; c in (p, s, propagation)."""
+        frame = interface_frame(z, _tangential(d, z))
+        face = solve_face(FramedMedium(AIR, frame), FramedMedium(self.crystal, frame), False, False)
+        power = c.power_into(face.transmission(1)[self.mode], face.transmission(0)[self.mode])
+        return power * face.transmitted[self.mode].flux() / face.incident[0].flux()
+
+    def leave(self, k: np.ndarray, z: np.ndarray, power: np.ndarray) -> Coherency:
+        """Return what leaves, in (p, s, propagation)."""
+        frame = interface_frame(z, _tangential(k, z))
+        face = solve_face(FramedMedium(self.crystal, frame), FramedMedium(AIR, frame), False, False)
+        s, p = face.transmission(self.mode)
+        return Coherency.pure(p, s, power * face.transmitted[0].flux() / face.incident[self.mode].flux())
+
+    def forward(self, c: Coherency) -> Coherency:
+        return self.leave(self.k, self.z_out, self.enter(self.d, self.z_in, c))
+
+    def backward(self, w: Coherency) -> Coherency:
+        """Return J† W J, by carrying conj(W) along the reversed path as if it were light.
+
+        Reversing a path turns the interface frame's x and z round: s stays, p changes sign, and so does C_xy.
+        """
+        d_out = interface_frame(self.z_out, _tangential(self.k, self.z_out))
+        q = np.sqrt(1.0 - d_out.kappa**2)
+        back = -(d_out.x * d_out.kappa + d_out.z * q)
+        carried = Coherency(w.xx, w.yy, -w.xy_re, w.xy_im)  # conj, then the sign
+        out = self.leave(-self.k, -self.z_in, self.enter(back, -self.z_out, carried))
+        return Coherency(out.xx, out.yy, -out.xy_re, out.xy_im)
+
+
+def _trace(w: Coherency, c: Coherency) -> np.ndarray:
+    """Return tr(W C)."""
+    return w.xx * c.xx + w.yy * c.yy + 2 * (w.xy_re * c.xy_re + w.xy_im * c.xy_im)
+
+
+@pytest.mark.parametrize("mode", [0, 1])
+def test_a_path_gives_the_same_number_from_either_end(mode: int) -> None:
+    """tr(W · J C J†) = tr(J† W J · C) with J from the code's own faces, met from either side."""
     rng = np.random.default_rng(4)
-    _, c = _hermitian(rng, COUNT)
-    _, w = _hermitian(rng, COUNT)
-    path = rng.normal(size=(COUNT, 2, 2)) + 1j * rng.normal(size=(COUNT, 2, 2))
-    adjoint = np.conj(np.swapaxes(path, 1, 2))
-    forward = np.trace(w @ path @ c @ adjoint, axis1=1, axis2=2)
-    # The renderer's way: conj(W) is carried by the transposed Jones matrix, as light would be.
-    carried = np.swapaxes(path, 1, 2) @ np.conj(w) @ np.conj(path)
-    backward = np.trace(np.conj(carried) @ c, axis1=1, axis2=2)
-    np.testing.assert_allclose(backward, forward, rtol=1e-11)
+    path = Path(5, mode)
+    c, _ = _hermitian(rng, COUNT)
+    w, _ = _hermitian(rng, COUNT)
+    there, back = _trace(w, path.forward(c)), _trace(path.backward(w), c)
+    assert there.min() > 0
+    np.testing.assert_allclose(back, there, rtol=1e-10)
 
 
-def test_left_multiplication_would_be_caught() -> None:
-    """The mutant W → J W J† differs by far more than any tolerance used here."""
-    rng = np.random.default_rng(5)
-    _, w = _hermitian(rng, COUNT)
-    forward, _ = _entry_and_exit(6)
-    right = np.conj(np.swapaxes(forward, 1, 2)) @ w @ forward
-    wrong = forward @ w @ np.conj(np.swapaxes(forward, 1, 2))
-    assert np.median(np.abs(right - wrong).max(axis=(1, 2)) / np.abs(right).max(axis=(1, 2))) > 0.1
+@pytest.mark.parametrize("mode", [0, 1])
+def test_mutants_of_the_adjoint_are_caught(mode: int) -> None:
+    """The sign of p forgotten, and multiplication on the left."""
+    rng = np.random.default_rng(6)
+    path = Path(7, mode)
+    c, _ = _hermitian(rng, COUNT)
+    w, _ = _hermitian(rng, COUNT)
+    there = _trace(w, path.forward(c))
+    flipped = Coherency(w.xx, w.yy, -w.xy_re, w.xy_im)
+    left = path.forward(w)  # J W J†: multiplied on the left
+    for wrong in (path.backward(flipped), left):
+        assert np.median(np.abs(_trace(wrong, c) / there - 1.0)) > 0.03
 
 
 @pytest.mark.parametrize("seed", [7, 8])
