@@ -39,11 +39,12 @@ class Pass:
     def positions(self, across: Real, down: Real) -> tuple[Real, Real]:
         """Return the position in pixels of columns `across` and rows `down`, in pixels from the picture's top left.
 
-        From pixel to pixel the pass moves on by a cell: side × side neighbours see each of their cells in each pass's
-        wavelengths once. One cell for all pixels would shift the colours of a picture against each other.
+        From pixel to pixel the pass moves on by a cell, and from side to side pixels by a cell the other way too, so
+        that along a row as well as along a column it comes through all cells. One cell for all pixels would shift the
+        colours of a picture against each other; one row of cells for a row of pixels would colour fine lines along it.
         """
-        x = (self.column + across) % self.side
-        y = (self.row + down) % self.side
+        x = (self.column + across + down // self.side) % self.side
+        y = (self.row + down + across // self.side) % self.side
         return across + (x + 0.5) / self.side, down + (y + 0.5) / self.side
 
 

@@ -134,6 +134,19 @@ def test_shadow_and_light_through_the_block() -> None:
     assert clear > 0.99
 
 
+@pytest.mark.parametrize("side", [2, 4])
+def test_passes_come_through_all_cells_along_rows_and_columns(side: int) -> None:
+    """Else a fine line along a row of pixels would be seen by some wavelengths only, and be coloured."""
+    along = np.arange(side * side, dtype=float)
+    still = np.full(along.size, 3.0)
+    for sample in passes(side, 4, seed=5):
+        for across, down in ((along, still), (still, along)):
+            x, y = sample.positions(across, down)
+            assert (
+                len({(int((x[i] - across[i]) * side), int((y[i] - down[i]) * side)) for i in range(x.size)}) == side**2
+            )
+
+
 def test_positions_tile_the_pixel() -> None:
     for side in (2, 4, 8):
         samples = passes(side, 4, seed=5)
