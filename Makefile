@@ -40,7 +40,11 @@ test: check
 test-all: check
 	$(BIN)/python -m pytest
 
-benchmarks: .venv/test.stamp
+.venv/benchmark.stamp: requirements/benchmark.txt .venv/test.stamp
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements/benchmark.txt
+	@touch $@
+
+benchmarks: .venv/benchmark.stamp
 	$(BIN)/python -m benchmarks.rotating_calcite
 	$(BIN)/python -m benchmarks.interface
 
@@ -49,6 +53,7 @@ lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --quiet pyproject.toml -o requirements/runtime.txt
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --quiet --extra test -c requirements/runtime.txt pyproject.toml -o requirements/test.txt
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --quiet -c requirements/runtime.txt requirements/build.in -o requirements/build.txt
+	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --quiet --extra benchmark --extra test -c requirements/test.txt pyproject.toml -o requirements/benchmark.txt
 
 clean:
 	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crystal_core.errors import InputError, NotSupportedError
+from crystal_core.errors import InputError
 from crystal_core.optics import Medium, scatter
 
 AIR = Medium.isotropic(1.0)
@@ -27,9 +27,20 @@ def test_an_absorption_must_not_be_negative() -> None:
         Medium.uniaxial(1.5, 1.6, (0, 0, 1), (0.0, -1.0))
 
 
-def test_biaxial_media_are_refused() -> None:
-    with pytest.raises(NotSupportedError, match="biaxial"):
-        Medium.biaxial(1.5, 1.6, 1.7)
+@pytest.mark.parametrize("axes", [np.eye(3) * 1.001, np.ones((3, 3)), np.eye(2), np.full((3, 3), np.nan)])
+def test_axes_must_be_orthonormal(axes: np.ndarray) -> None:
+    with pytest.raises(InputError, match="/axes"):
+        Medium.biaxial((1.5, 1.6, 1.7), axes)
+
+
+def test_absorption_and_gyration_are_checked() -> None:
+    medium = Medium.biaxial((1.5, 1.6, 1.7), np.eye(3))
+    with pytest.raises(InputError, match="/absorption_per_mm/2"):
+        medium.absorbing((0, 1, -1), np.eye(3))
+    with pytest.raises(InputError, match="/absorption_axes"):
+        medium.absorbing((0, 1, 1), 2 * np.eye(3))
+    with pytest.raises(InputError, match="/gyration"):
+        medium.active(np.triu(np.ones((3, 3))))
 
 
 @pytest.mark.parametrize(

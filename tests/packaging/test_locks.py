@@ -9,17 +9,18 @@ import pytest
 
 from tests.packaging.sources import ROOT, pins
 
-LOCKS = ("runtime.txt", "build.txt", "test.txt")
+LOCKS = ("runtime.txt", "build.txt", "test.txt", "benchmark.txt")
 
 
 def declared() -> dict[str, list[str]]:
-    """Return the names that pyproject.toml requires: of the runtime, of the build, of the tests."""
+    """Return the names that pyproject.toml requires: of the runtime, the build, the tests, the benchmarks."""
     with (ROOT / "pyproject.toml").open("rb") as file:
         project = tomllib.load(file)
     requirements = {
         "runtime.txt": project["project"]["dependencies"],
         "build.txt": project["build-system"]["requires"],
         "test.txt": project["project"]["dependencies"] + project["project"]["optional-dependencies"]["test"],
+        "benchmark.txt": project["project"]["optional-dependencies"]["benchmark"],
     }
     return {
         lock: [re.split(r"[^A-Za-z0-9._-]", line)[0].lower() for line in lines] for lock, lines in requirements.items()
