@@ -248,9 +248,11 @@ def waves() -> Drawing:
         "Waves at a face of calcite",
         "Section through the wave vector surfaces of air and calcite with the waves of one tangential wave vector.",
     )
-    axis_deg, kappa = -35.0, 0.7
-    axis = np.array((np.sin(np.deg2rad(axis_deg)), 0.0, np.cos(np.deg2rad(axis_deg))))
-    calcite = medium(minerals_db.mineral("calcite"), SODIUM_D_NM, axis)
+    turned, kappa = np.deg2rad(-35.0), 0.7
+    sin, cos = np.sin(turned), np.cos(turned)
+    rotation = np.array(((cos, 0.0, sin), (0.0, 1.0, 0.0), (-sin, 0.0, cos)))
+    axis = rotation[:, 2]
+    calcite = medium(minerals_db.mineral("calcite"), SODIUM_D_NM, rotation)
     event = scatter((0.0, 0.0, 1.0), np.array(((kappa,), (0.0,), (0.0,))), Medium.isotropic(1.0), calcite)
     n_o, n_e = (float(n) for n in calcite.indices)
     origin, unit = np.array((345.0, 215.0)), 165.0

@@ -1,11 +1,14 @@
-"""Optical and morphological constants of a mineral's entry, evaluated."""
+"""Optical constants of a mineral's entry, evaluated, and its medium in the world."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crystal_core.errors import NotSupportedError
+from crystal_core.errors import InputError
 from crystal_core.optics import Medium
 from minerals_db import Mineral
 
@@ -16,30 +19,72 @@ Real = NDArray[np.float64]
 SODIUM_D_NM = 589.3
 """Mean of the sodium doublet, at which mineralogists quote indices."""
 
+ROTATION_TOLERANCE = 1e-9
+"""How far R Rᵀ may stand from 1: far above rounding, far below any direction known by measurement."""
+
+_CURVES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"isotropic": ("n",), "uniaxial": ("o", "e"), "biaxial": ("a", "b", "c")}
+)
+"""The principal curves of an entry by its optical class; biaxial entries are orthorhombic, the schema takes no others."""
+
 
 def principal_indices(mineral: Mineral, wavelength_nm: ArrayLike) -> tuple[Real, ...]:
-    """Return (n,) of an isotropic or (n_o, n_e) of a uniaxial mineral at vacuum wavelengths, each of their shape.
-
-    Raises
-    ------
-    NotSupportedError
-        The mineral is biaxial.
-    """
-    wavelengths = np.asarray(wavelength_nm, np.float64)
-    if mineral.optical_class == "isotropic":
-        return (mineral.dispersion["n"].index(wavelengths),)
-    if mineral.optical_class == "uniaxial":
-        return mineral.dispersion["o"].index(wavelengths), mineral.dispersion["e"].index(wavelengths)
-    raise NotSupportedError(f"{mineral.id} is biaxial: only isotropic and uniaxial crystals can be rendered yet")
-
-
-def medium(mineral: Mineral, wavelength_nm: ArrayLike, axis: ArrayLike) -> Medium:
-    """Return the mineral's medium at each ray's wavelength, shape (N,), with its optic axis along `axis`.
+    """Return the principal indices of a mineral.
 
     Parameters
     ----------
-    axis : array_like
-        Unit vector, shape (3,); not looked at if the mineral is isotropic.
+    mineral : Mineral
+        Its entry.
+    wavelength_nm : array_like, shape (...)
+        Vacuum wavelengths, nm. Outside a curve's range the value at its nearer end is taken.
+
+    Returns
+    -------
+    tuple of float64 arrays, shape (...) each
+        (n,) of an isotropic, (n_o, n_e) of a uniaxial mineral, (n_a, n_b, n_c) of an orthorhombic one for waves that
+        vibrate along the axes a, b, c of its cell; which of them is α, β or γ may change with the wavelength.
     """
-    indices = principal_indices(mineral, wavelength_nm)
-    return Medium.isotropic(indices[0]) if len(indices) == 1 else Medium.uniaxial(indices[0], indices[1], axis)
+    wavelengths = np.asarray(wavelength_nm, np.float64)
+    return tuple(mineral.dispersion[axis].index(wavelengths) for axis in _CURVES[mineral.optical_class])
+
+
+def medium(mineral: Mineral, wavelength_nm: ArrayLike, rotation: ArrayLike | None = None) -> Medium:
+    """Return the medium of a mineral that is turned into the world.
+
+    Parameters
+    ----------
+    mineral : Mineral
+        Its entry.
+    wavelength_nm : array_like, shape () or (N,)
+        Vacuum wavelength of each ray, nm.
+    rotation : array_like, shape (3, 3), optional
+        R of v_world = R v_crystal, a proper rotation; the crystal frame has x ∥ a, z ∥ c*, y = z × x. The optic axis of
+        a uniaxial crystal is R's third column, the axes a, b, c of an orthorhombic one are its three columns. The
+        identity if left out.
+
+    Raises
+    ------
+    InputError
+        A wavelength that is not finite and positive, or a rotation that is none. A mirror image is no rotation: the
+        crystal would be one of the other hand.
+    """
+    wavelengths = np.asarray(wavelength_nm, np.float64)
+    if wavelengths.ndim > 1 or not np.all(np.isfinite(wavelengths) & (wavelengths > 0)):
+        raise InputError.at("/wavelength_nm", "wavelengths must be finite and positive, shape () or (N,)")
+    turned = _rotation(rotation)
+    indices = principal_indices(mineral, wavelengths)
+    if len(indices) == 1:
+        return Medium.isotropic(indices[0])
+    if len(indices) == 2:
+        return Medium.uniaxial(indices[0], indices[1], turned[:, 2])
+    return Medium.biaxial(indices, turned.T)
+
+
+def _rotation(value: ArrayLike | None) -> Real:
+    if value is None:
+        return np.eye(3)
+    matrix = np.asarray(value, np.float64)
+    sound = matrix.shape == (3, 3) and bool(np.all(np.isfinite(matrix)))
+    if not sound or np.abs(matrix @ matrix.T - np.eye(3)).max() > ROTATION_TOLERANCE or np.linalg.det(matrix) < 0:
+        raise InputError.at("/rotation", "the rotation must be a proper one: orthonormal rows, determinant +1, (3, 3)")
+    return matrix
