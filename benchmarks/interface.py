@@ -10,8 +10,8 @@ import time
 import numpy as np
 
 from crystal_core.optics import Medium, interface_frame
+from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.interface import solve_face
-from crystal_core.optics.modes import FramedMedium
 from crystal_core.render import keep_freed_memory
 from crystal_core.render.rays import BATCH
 
@@ -21,6 +21,9 @@ ROUNDS = 40
 def _medium(kind: str, rng: np.random.Generator) -> Medium:
     if kind == "isotropic":
         return Medium.isotropic(rng.uniform(1.5, 1.7, BATCH))
+    if kind == "biaxial":
+        axes = np.moveaxis(np.linalg.qr(rng.normal(size=(BATCH, 3, 3)))[0], 0, 2)
+        return Medium.biaxial(tuple(rng.uniform(1.5, 1.7, (3, BATCH))), axes)
     axis = rng.normal(size=(3, BATCH))
     return Medium.uniaxial(
         rng.uniform(1.5, 1.7, BATCH), rng.uniform(1.5, 1.7, BATCH), axis / np.sqrt(np.sum(axis * axis, axis=0))
@@ -39,7 +42,7 @@ def events_per_second(source: str, target: str) -> float:
     for _ in range(ROUNDS):
         started = time.perf_counter()
         frame = interface_frame(normal, tangential)
-        face = solve_face(FramedMedium(near, frame), FramedMedium(far, frame), False, False)
+        face = solve_face(framed(near, frame), framed(far, frame), False, False)
         face.transmission(0)
         face.reflection(0, 0)
         face.reflection(1, 0)
@@ -50,8 +53,8 @@ def events_per_second(source: str, target: str) -> float:
 def main() -> None:
     """Print the rate for each kind of pair."""
     keep_freed_memory()
-    for source in ("isotropic", "uniaxial"):
-        for target in ("isotropic", "uniaxial"):
+    for source in ("isotropic", "uniaxial", "biaxial"):
+        for target in ("isotropic", "uniaxial", "biaxial"):
             print(f"{source:9s} -> {target:9s}  {events_per_second(source, target) / 1e6:6.2f} M events/s")
 
 

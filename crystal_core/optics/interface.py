@@ -23,9 +23,11 @@ from numpy.typing import ArrayLike
 
 from crystal_core.errors import InputError
 from crystal_core.optics.arrays import BoolArray, Field, Real, dot
+from crystal_core.optics.eigenwaves import framed
+from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.frames import InterfaceFrame, interface_frame
 from crystal_core.optics.medium import UNIT_TOLERANCE, Medium
-from crystal_core.optics.modes import FramedMedium, Mode, Wave, bilinear
+from crystal_core.optics.modes import Mode, Wave, bilinear
 
 __all__ = ["Face", "Scattering", "scatter", "solve_face"]
 
@@ -93,8 +95,9 @@ class Scattering:
     Parameters
     ----------
     incident, reflected, transmitted : pair of Wave
-        Modes of isotropic media: s, p; of uniaxial ones: ordinary, extraordinary. Incident waves that are evanescent
-        cannot come in: their columns of amplitudes and powers are NaN.
+        Modes of isotropic media: s, p; of uniaxial ones: ordinary, extraordinary; of biaxial ones: slow, then fast or
+        a second slow one. Incident waves that are evanescent cannot come in: their columns of amplitudes and powers
+        are NaN.
     amplitude_reflected, amplitude_transmitted : nested list of Field
         [i][j]: amplitude of outgoing mode i for incident mode j of unit field, shape (N,).
     power_reflected, power_transmitted : nested list of Real
@@ -134,24 +137,16 @@ def scatter(normal: ArrayLike, tangential_k: ArrayLike, source: Medium, target: 
     """
     z, kt = _checked(normal, tangential_k)
     frame = interface_frame(z, kt)
-    here, there = FramedMedium(source, frame), FramedMedium(target, frame)
+    here, there = framed(source, frame), framed(target, frame)
     incoming, outgoing = here.propagating(), there.propagating()
     face = solve_face(here, there, not (incoming[0] & incoming[1]).all(), not (outgoing[0] & outgoing[1]).all())
 
-    names = {True: ("s", "p"), False: ("ordinary", "extraordinary")}
-    sides = (
-        (face.incident, names[source.is_isotropic], incoming),
-        (face.reflected, names[source.is_isotropic], incoming),
-        (face.transmitted, names[target.is_isotropic], outgoing),
-    )
+    sides = ((face.incident, incoming), (face.reflected, incoming), (face.transmitted, outgoing))
     scale: list[list[Real]] = []
     waves: list[tuple[Wave, Wave]] = []
-    for modes, pair_names, free in sides:
+    for modes, free in sides:
         lengths = [_field_length(mode) for mode in modes]
-        first, second = (
-            _wave(mode, length, name, frame, ok)
-            for mode, length, name, ok in zip(modes, lengths, pair_names, free, strict=True)
-        )
+        first, second = (_wave(mode, length, frame, ok) for mode, length, ok in zip(modes, lengths, free, strict=True))
         waves.append((first, second))
         scale.append(lengths)
 
@@ -228,7 +223,7 @@ def _field_length(mode: Mode) -> Real:
     return np.sqrt(total)
 
 
-def _wave(mode: Mode, length: Real, name: str, frame: InterfaceFrame, free: BoolArray) -> Wave:
+def _wave(mode: Mode, length: Real, frame: InterfaceFrame, free: BoolArray) -> Wave:
     zero = np.zeros(mode.q.shape)
     ex, ey, ez = ((zero if v is None else v) / length for v in (mode.ex, mode.ey, mode.ez))
     k = frame.world(frame.kappa, None, _real(mode.q))
@@ -237,7 +232,7 @@ def _wave(mode: Mode, length: Real, name: str, frame: InterfaceFrame, free: Bool
     with np.errstate(invalid="ignore", divide="ignore"):  # an evanescent wave has no ray
         ray = np.where(free, ray / np.sqrt(dot(ray, ray)), np.nan)
     return Wave(
-        name=name,
+        mode=mode.names(),
         k=k,
         k_imag=frame.z * (np.imag(mode.q) + zero),
         field=frame.world(ex, ey, ez).astype(np.complex128),

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from crystal_core.optics import Coherency, InterfaceFrame, Medium, absorption_along_ray, interface_frame
 from crystal_core.optics.arrays import Complex, Field, columns, dot
+from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.interface import solve_face
-from crystal_core.optics.modes import FramedMedium, Mode
+from crystal_core.optics.modes import Mode
 from crystal_core.render.rays import InsideRays
 from crystal_core.render.tracer import AIR, Arrivals, Leaving, Roulette, face_normals
 from crystal_core.scene import StagedSpecimen
@@ -46,7 +47,7 @@ class IsotropicEvents:
         forward = dot(d, z)
         frame = interface_frame(z, d - forward * z)
         crystal = self._medium.take(arrivals.colour)
-        face = solve_face(FramedMedium(AIR, frame), FramedMedium(crystal, frame), False, True)
+        face = solve_face(framed(AIR, frame), framed(crystal, frame), False, True)
         t_s, t_p = face.transmission(0)[0], face.transmission(1)[1]
         inward = face.transmitted[0].q.real
         scale = np.sqrt(inward / forward)
@@ -74,7 +75,7 @@ class IsotropicEvents:
         outward = dot(rays.k, z)
         tangential = rays.k - outward * z
         frame = interface_frame(z, tangential)
-        face = solve_face(FramedMedium(crystal, frame), FramedMedium(AIR, frame), False, True)
+        face = solve_face(framed(crystal, frame), framed(AIR, frame), False, True)
         air = face.transmitted[0].q.real
         scale = np.sqrt(air / outward)
         before = importance.in_frame(rays.k / n, _p_axis(frame, outward, n))

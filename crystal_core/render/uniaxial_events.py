@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 
 from crystal_core.optics import InterfaceFrame, Medium, absorption_along_ray, interface_frame
 from crystal_core.optics.arrays import columns, dot
+from crystal_core.optics.eigenwaves import framed
+from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.interface import Face, solve_face
-from crystal_core.optics.modes import FramedMedium, Mode
+from crystal_core.optics.modes import Mode
 from crystal_core.render.rays import InsideRays
 from crystal_core.render.tracer import AIR, Arrivals, Leaving, Roulette, face_normals
 from crystal_core.scene import StagedSpecimen
@@ -51,14 +53,14 @@ class UniaxialEvents:
         z = -columns(self._normals, arrivals.face)
         forward = dot(d, z)
         frame = interface_frame(z, d - forward * z)
-        crystal = FramedMedium(self._medium.take(arrivals.colour), frame)
+        crystal = framed(self._medium.take(arrivals.colour), frame)
         # (p, s, propagation) is right-handed: p is x, s is y.
         p_axis = frame.world(forward, None, -frame.kappa)
         importance = arrivals.importance.in_frame(d, p_axis)
         reflected = importance.intensity()
         depth = np.zeros(forward.size, np.int16)
         pieces: tuple[list[InsideRays], list[InsideRays]] = ([], [])
-        for part, face in _faces(FramedMedium(AIR, frame), crystal):
+        for part, face in _faces(framed(AIR, frame), crystal):
             from_s, from_p = face.transmission(0), face.transmission(1)
             arriving = importance.take(part)
             powers = []
@@ -87,7 +89,7 @@ class UniaxialEvents:
         depth = rays.depth + np.int16(1)
         pieces: tuple[list[InsideRays], list[InsideRays]] = ([], [])
         out: list[Leaving] = []
-        for part, face in _faces(FramedMedium(medium, frame), FramedMedium(AIR, frame)):
+        for part, face in _faces(framed(medium, frame), framed(AIR, frame)):
             transmitted, reflected = _shares(face, mode)
             weight, lane = importance[part], rays.lane[part]
             gone = np.flatnonzero(transmitted > 0.0)

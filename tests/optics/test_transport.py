@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from crystal_core.optics import Coherency, Medium, interface_frame, scatter, transverse_frame
+from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.interface import solve_face
-from crystal_core.optics.modes import FramedMedium
 
 AIR = Medium.isotropic(1.0)
 COUNT = 500
@@ -96,14 +96,14 @@ class Path:
     def enter(self, d: np.ndarray, z: np.ndarray, c: Coherency) -> np.ndarray:
         """Return the power that enters the mode; c in (p, s, propagation)."""
         frame = interface_frame(z, _tangential(d, z))
-        face = solve_face(FramedMedium(AIR, frame), FramedMedium(self.crystal, frame), False, False)
+        face = solve_face(framed(AIR, frame), framed(self.crystal, frame), False, False)
         power = c.power_into(face.transmission(1)[self.mode], face.transmission(0)[self.mode])
         return power * face.transmitted[self.mode].flux() / face.incident[0].flux()
 
     def leave(self, k: np.ndarray, z: np.ndarray, power: np.ndarray) -> Coherency:
         """Return what leaves, in (p, s, propagation)."""
         frame = interface_frame(z, _tangential(k, z))
-        face = solve_face(FramedMedium(self.crystal, frame), FramedMedium(AIR, frame), False, False)
+        face = solve_face(framed(self.crystal, frame), framed(AIR, frame), False, False)
         s, p = face.transmission(self.mode)
         return Coherency.pure(p, s, power * face.transmitted[0].flux() / face.incident[self.mode].flux())
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from crystal_core.optics import Coherency, Medium, interface_frame
+from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.interface import solve_face
-from crystal_core.optics.modes import FramedMedium
 from crystal_core.render import Illumination, Quality, render_pixels
 from crystal_core.render.illumination import plate_transmittance
 from crystal_core.render.rays import InsideRays
@@ -87,8 +87,8 @@ def test_a_face_gives_out_what_it_takes_in(seed: int) -> None:
         z_in = -z[:, rays.lane]
         kt = rays.k - np.sum(rays.k * z_in, axis=0) * z_in
         frame = interface_frame(z_in, kt)
-        near = FramedMedium(Medium.uniaxial(1.6584, 1.4864, scene.specimen.axis), frame)
-        back = solve_face(near, FramedMedium(AIR, frame), False, True)
+        near = framed(Medium.uniaxial(1.6584, 1.4864, scene.specimen.axis), frame)
+        back = solve_face(near, framed(AIR, frame), False, True)
         transmitted, reflected = _shares(back, mode)
         np.testing.assert_allclose(transmitted + reflected[0] + reflected[1], 1.0, atol=1e-12)
         # The other reflected mode takes the rest; its own amplitude says the same.

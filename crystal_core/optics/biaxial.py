@@ -1,0 +1,235 @@
+"""Eigenwaves of a biaxial medium: Fresnel's quartic, refined and told apart by the optic axes.
+
+Which wave is which follows from how a line meets the index surface, two closed sheets, one within the other. Of four
+real roots q₁ ≥ q₂ ≥ q₃ ≥ q₄ the outermost are on the outer (slow) sheet, and energy goes along +normal at q₁, along
+−normal at q₄. The inner two are on the fast sheet, q₂ forward and q₃ backward, unless the line passes through the
+dimple at an optic axis and meets the outer sheet four times: then the directions alternate, q₂ is backward, q₃ forward
+(*inhibited reflection*: both waves of a side are slow). Two real roots are on the outer sheet. Of a complex pair the
+root with Im q > 0 decays along +normal.
+
+Fields follow from the optic axes o₁, o₂: D of the fast wave bisects the directions u_i ∥ k × o_i, D ∥ u₁ + u₂, that of
+the slow wave is at right angles to it (Born & Wolf, Principles of Optics, 7th ed., §15.3.3), and
+
+    E = ε⁻¹D = β⁻² D − ½(α⁻² − γ⁻²) [ o₁ (o₂·D) + o₂ (o₁·D) ],      H = k × E,      ray = E × H.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crystal_core.optics.arrays import BoolArray, Field, Rays, Real
+from crystal_core.optics.framed import FramedMedium
+from crystal_core.optics.frames import InterfaceFrame
+from crystal_core.optics.indicatrix import BiaxialIndicatrix
+from crystal_core.optics.medium import Medium
+from crystal_core.optics.modes import Mode, bilinear
+from crystal_core.optics.sheets import Sheets
+
+__all__ = ["FramedBiaxial"]
+
+STEPS = 2
+"""Newton steps from the quartic's roots, good to 1e-8 at worst, to rounding."""
+
+NEAR_AXIS = 1e-3
+"""Angle to an optic axis below which the quartic's roots are worth less than a fresh start from the axis."""
+
+ONE_FRAME = 1e-2
+"""Angle to an optic axis below which the two waves are made orthogonal to rounding: errors there are ε/θ each."""
+
+ON_AXIS = 45.0
+"""Angle, in units of rounding, below which a wave travels along an optic axis and any direction across it serves."""
+
+SLOW, FAST = -1.0, 1.0
+
+
+class FramedBiaxial(FramedMedium):
+    """A biaxial medium in the frame of an interface: mode 0 is slow, mode 1 fast or a second slow one."""
+
+    def __init__(self, medium: Medium, frame: InterfaceFrame) -> None:
+        super().__init__(medium, frame)
+        self._sheets = Sheets.of(BiaxialIndicatrix.of(medium), frame)
+        factors = self._sheets.quadratics()
+        up, down = factors.upper_square >= 0.0, factors.lower_square >= 0.0
+        one, both = up | down, up & down
+        up_root, down_root = np.sqrt(np.abs(factors.upper_square)), np.sqrt(np.abs(factors.lower_square))
+        if both.all():
+            self._from_real_roots(
+                factors.upper + up_root, factors.upper - up_root, factors.lower + down_root, factors.lower - down_root
+            )
+            self._free = one, both
+            return
+        # Of mixed factors mode 0 takes the real one; a complex factor stands for centre ± i·root.
+        first_up = up | ~down
+        centre, root = np.where(first_up, factors.upper, factors.lower), np.where(first_up, up_root, down_root)
+        other, other_root = np.where(first_up, factors.lower, factors.upper), np.where(first_up, down_root, up_root)
+        self._from_real_roots(centre + root, centre - root, other + other_root, other - other_root, both)
+        self._free = one, both
+        for mode, (middle, width, free) in enumerate(((centre, root, one), (other, other_root, both))):
+            rays = np.flatnonzero(~free)
+            self._forward[mode][rays], self._backward[mode][rays] = middle[rays], middle[rays]
+            self._decay[mode] = np.where(free, 0.0, width)
+
+    def _from_real_roots(self, q1: Real, q2: Real, q3: Real, q4: Real, four: BoolArray | None = None) -> None:
+        """Sort the roots of two real factors into modes; `four` tells where all are real (None: everywhere)."""
+        sheets = self._sheets
+        # Rounding may swap neighbours that all but coincide.
+        q1, q2 = np.maximum(q1, q2), np.minimum(q1, q2)
+        q3, q4 = np.maximum(q3, q4), np.minimum(q3, q4)
+        if four is not None:
+            q1, q3 = np.where(four, np.maximum(q1, q3), q1), np.where(four, np.minimum(q1, q3), q3)
+            q2, q4 = np.where(four, np.maximum(q2, q4), q2), np.where(four, np.minimum(q2, q4), q4)
+        higher, lower = np.maximum(q2, q3), np.minimum(q2, q3)
+        slow = sheets.smooth(higher)[0] + sheets.smooth(lower)[0] > 0.0
+        if four is not None:
+            slow &= four
+            higher, lower = np.where(four, higher, q3), np.where(four, lower, q4)
+            q4 = np.where(four, q4, q2)
+        self._second_slow: BoolArray = slow
+        self._forward: list[Real] = [q1, np.where(slow, lower, higher)]
+        self._backward: list[Real] = [q4, np.where(slow, higher, lower)]
+        self._decay: list[Real | None] = [None, None]
+
+    def take(self, rays: Rays) -> FramedBiaxial:
+        """Return the same for a selection of rays."""
+        part = object.__new__(FramedBiaxial)
+        part.medium, part.frame = self.medium.take(rays), self.frame.take(rays)
+        part._sheets = self._sheets.take(rays)
+        part._second_slow = self._second_slow[rays]
+        part._free = self._free[0][rays], self._free[1][rays]
+        part._forward = [q[rays] for q in self._forward]
+        part._backward = [q[rays] for q in self._backward]
+        part._decay = [None if decay is None else decay[rays] for decay in self._decay]
+        return part
+
+    def propagating(self) -> tuple[BoolArray, BoolArray]:
+        """Return whether mode 0 and mode 1 propagate, shape (N,) each."""
+        return self._free
+
+    def pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
+        """Return the waves along sign·normal, as `FramedMedium.pair` says."""
+        forward = sign > 0
+        slow, fast = self._refined(forward)
+        second = np.where(self._second_slow, SLOW, FAST)
+        if not evanescent:
+            first_slow = np.ones(slow.shape, np.bool_)
+            modes = self._mode(slow, SLOW, first_slow), self._mode(fast, second, self._second_slow)
+        else:
+            q0, branch0 = self._complex(slow, np.full(slow.shape, SLOW), 0, forward)
+            q1, branch1 = self._complex(fast, second, 1, forward)
+            modes = self._mode(q0, branch0, branch0 == SLOW), self._mode(q1, branch1, branch1 == SLOW)
+        self._make_orthogonal(modes)
+        return modes
+
+    def _refined(self, forward: bool) -> tuple[Real, Real]:
+        """Return the real roots of both modes to rounding; they mean nothing where a wave is evanescent."""
+        sheets = self._sheets
+        slow, fast = self._forward if forward else self._backward
+        k2 = sheets.kappa * sheets.kappa + slow * slow
+        to_first, to_second = sheets.square(0, slow)[0], sheets.square(1, slow)[0]
+        near = (np.minimum(to_first, to_second) < NEAR_AXIS**2 * k2) & self._free[1] & ~self._second_slow
+        which = to_second < to_first
+        slow = sheets.refined(slow, SLOW, STEPS)
+        fast = sheets.refined(fast, np.where(self._second_slow, SLOW, FAST), STEPS)
+        rays = np.flatnonzero(near)
+        if rays.size:
+            slow[rays], fast[rays] = self._from_axis(rays, which[rays], forward)
+        return slow, fast
+
+    def _from_axis(self, rays: Rays, second: BoolArray, forward: bool) -> tuple[Real, Real]:
+        sheets = self._sheets.take(rays)
+        slow, fast = self._forward if forward else self._backward
+        middle = 0.5 * (slow[rays] + fast[rays])
+        by_first, by_second = sheets.near_axis(middle, 0), sheets.near_axis(middle, 1)
+        slow, fast = (np.where(second, b, a) for a, b in zip(by_first, by_second, strict=True))
+        return sheets.refined(slow, SLOW, STEPS + 1), sheets.refined(fast, FAST, STEPS + 1)
+
+    def _complex(self, q: Real, branch: Real, mode: int, forward: bool) -> tuple[Field, Real]:
+        """Return the roots as complex numbers, those of evanescent waves refined, and the branch of each."""
+        result = q.astype(np.result_type(q, np.complex64))
+        rays = np.flatnonzero(~self._free[mode])
+        decay = self._decay[mode]
+        if rays.size and decay is not None:
+            centre = (self._forward if forward else self._backward)[mode][rays]
+            start = centre + (1j if forward else -1j) * decay[rays]
+            refined, own = self._sheets.take(rays).refined_complex(start, STEPS)
+            result[rays] = refined
+            branch = branch.copy()
+            branch[rays] = own
+        return result, branch
+
+    def _mode(self, q: Field, branch: Real | float, slow: BoolArray) -> Mode:
+        """Return the fields of waves with given roots on given branches."""
+        kappa = self.frame.kappa
+        sheets = self._sheets
+        (x1, y1, z1), (x2, y2, z2) = sheets.axes
+        ux, uy, uz = self._direction(0, q)
+        vx, vy, vz = self._direction(1, q)
+        same = (ux * vx + uy * vy + uz * vz).real >= 0.0
+        # The longer of u₁ ± u₂; the other vibration is across it and k.
+        turn = np.where(same, 1.0, -1.0)
+        lx, ly, lz = ux + turn * vx, uy + turn * vy, uz + turn * vz
+        direct = turn == branch
+        dx = np.where(direct, lx, -q * ly)
+        dy = np.where(direct, ly, q * lx - kappa * lz)
+        dz = np.where(direct, lz, kappa * ly)
+        along1 = sheets.half * (x1 * dx + y1 * dy + z1 * dz)
+        along2 = sheets.half * (x2 * dx + y2 * dy + z2 * dz)
+        ex = sheets.middle * dx - (x1 * along2 + x2 * along1)
+        ey = sheets.middle * dy - (y1 * along2 + y2 * along1)
+        ez = sheets.middle * dz - (z1 * along2 + z2 * along1)
+        hx, hy, hz = -q * ey, q * ex - kappa * ez, kappa * ey
+        ray = (ey * hz - ez * hy, ez * hx - ex * hz, ex * hy - ey * hx)
+        return Mode(q, ex, ey, ez, hx, hy, ray, slow)
+
+    def _direction(self, which: int, q: Field) -> tuple[Field, Field, Field]:
+        """Return k × o/|k × o| (without conjugation) of an optic axis, and y where k lies along it."""
+        kappa = self.frame.kappa
+        x, y, z = self._sheets.axes[which]
+        square = self._sheets.square(which, q)[0]
+        on_axis = np.abs(square) <= (ON_AXIS * np.finfo(kappa.dtype).eps) ** 2
+        some = bool(on_axis.any())
+        if some:
+            square = np.where(on_axis, 1.0, square)
+        inverse = 1.0 / np.sqrt(square)
+        across = -q * y * inverse, (q * x - kappa * z) * inverse, kappa * y * inverse
+        if not some:
+            return across
+        a, b, c = (np.where(on_axis, value, v) for value, v in zip((0.0, 1.0, 0.0), across, strict=True))
+        return a, b, c
+
+    def _make_orthogonal(self, modes: tuple[Mode, Mode]) -> None:
+        """Take from mode 1 what it has of mode 0, near an optic axis; g(ψ₀, ψ₁) = 0 holds for the exact waves.
+
+        Each wave near an axis is uncertain by rounding/θ, but within the plane of both: what is summed over the pair
+        keeps all digits if the two are orthogonal.
+        """
+        first, second = modes
+        q = first.q.real
+        limit = ONE_FRAME**2 * (self.frame.kappa**2 + q * q)
+        nearest = np.minimum(self._sheets.square(0, q)[0], self._sheets.square(1, q)[0])
+        rays = np.flatnonzero((nearest < limit) & self._free[1])
+        if not rays.size:
+            return
+        a, b = _selected(first, rays), _selected(second, rays)
+        norm = a.norm()
+        grazing = np.abs(norm) <= np.sqrt(np.finfo(q.dtype).eps) * _square_of_field(a)
+        share = np.where(grazing, 0.0, bilinear(a, b)) / np.where(grazing, 1.0, norm)
+        for name in ("ex", "ey", "ez", "hx", "hy"):
+            getattr(second, name)[rays] -= share * getattr(a, name)
+
+
+def _selected(mode: Mode, rays: Rays) -> Mode:
+    def part(values: Field | None) -> Field | None:
+        return None if values is None else values[rays]
+
+    return Mode(
+        mode.q[rays], part(mode.ex), part(mode.ey), part(mode.ez), part(mode.hx), part(mode.hy), mode.ray, mode.name
+    )
+
+
+def _square_of_field(mode: Mode) -> Real:
+    total = np.zeros(mode.q.shape)
+    for component in (mode.ex, mode.ey, mode.ez):
+        if component is not None:
+            total = total + np.abs(component) ** 2
+    return total

@@ -1,0 +1,27 @@
+"""The eigenwaves of any medium at an interface."""
+
+from __future__ import annotations
+
+from crystal_core.errors import NotSupportedError
+from crystal_core.optics.biaxial import FramedBiaxial
+from crystal_core.optics.framed import FramedMedium
+from crystal_core.optics.frames import InterfaceFrame
+from crystal_core.optics.isotropic import FramedIsotropic
+from crystal_core.optics.medium import Medium
+from crystal_core.optics.uniaxial import FramedUniaxial
+
+__all__ = ["framed"]
+
+
+def framed(medium: Medium, frame: InterfaceFrame) -> FramedMedium:
+    """Return a medium in the frame of an interface, by its number of principal indices.
+
+    Raises
+    ------
+    NotSupportedError
+        The medium is optically active.
+    """
+    if medium.gyration is not None:
+        raise NotSupportedError("optically active media cannot be put at an interface yet")
+    kinds: tuple[type[FramedMedium], ...] = (FramedIsotropic, FramedUniaxial, FramedBiaxial)
+    return kinds[len(medium.indices) - 1](medium, frame)

@@ -1,0 +1,166 @@
+"""The two sheets of a biaxial index surface along the normal of an interface, by the optic axes.
+
+With the unit vectors o₁, o₂ of the optic axes, both in the half-space of γ, the indices along a wave normal s are
+
+    1/n² = ½(α⁻² + γ⁻²) + ½(α⁻² − γ⁻²) cos(θ₁ ∓ θ₂),        θ_i = ∠(s, o_i),
+
+the upper sign for the fast wave (Born & Wolf, Principles of Optics, 7th ed., §15.3.3, eq. 19). Multiplied by k² this is
+F = P ± W = 0 with
+
+    P = ½(α⁻² + γ⁻²) k² + ½(α⁻² − γ⁻²)(k·o₁)(k·o₂) − 1,      W = ½(α⁻² − γ⁻²) |k × o₁||k × o₂|,
+
+and P² − W² = 0 is Fresnel's quartic. The quartic loses half the digits near an optic axis, where its roots fall
+together; F does not: there an error of ε in k is one of ε in q, and of ε/θ in the direction of vibration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from crystal_core.optics.arrays import Complex, Field, Rays, Real
+from crystal_core.optics.frames import InterfaceFrame
+from crystal_core.optics.indicatrix import BiaxialIndicatrix
+from crystal_core.optics.medium import take
+from crystal_core.optics.quartic import Quadratics, real_quadratics
+
+__all__ = ["Sheets"]
+
+Axis = tuple[Real, Real, Real]
+"""Components along x, y, z of the interface frame."""
+
+TINY = 1e-150
+"""Stands for a vanishing denominator whose numerator vanishes too; the square of it is still a number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheets:
+    """F(q) of both sheets for k = (κ, 0, q), shape (N,) or, where one medium serves all rays, ().
+
+    Parameters
+    ----------
+    kappa : Real
+        Tangential wave vector.
+    mean, half : Real
+        ½(α⁻² + γ⁻²) and ½(α⁻² − γ⁻²).
+    middle : Real
+        β⁻².
+    axes : pair of Axis
+        The optic axes.
+    """
+
+    kappa: Real
+    mean: Real
+    half: Real
+    middle: Real
+    axes: tuple[Axis, Axis]
+
+    @classmethod
+    def of(cls, indicatrix: BiaxialIndicatrix, frame: InterfaceFrame) -> Sheets:
+        """Return the sheets of an indicatrix in the frame of an interface."""
+        alpha, gamma = indicatrix.alpha, indicatrix.gamma
+        product = (alpha * gamma) ** 2
+        half = 0.5 * (gamma - alpha) * (gamma + alpha) / product
+        mean = 0.5 * (alpha * alpha + gamma * gamma) / product
+        first, second = indicatrix.optic_axes()
+        return cls(
+            frame.kappa,
+            np.asarray(mean),
+            np.asarray(half),
+            np.asarray(1.0 / indicatrix.beta**2),
+            (frame.components(first), frame.components(second)),
+        )
+
+    def take(self, rays: Rays) -> Sheets:
+        """Return those of a selection of rays."""
+        one, two = ((x[rays], y[rays], z[rays]) for x, y, z in self.axes)
+        return Sheets(
+            self.kappa[rays], take(self.mean, rays), take(self.half, rays), take(self.middle, rays), (one, two)
+        )
+
+    def smooth(self, q: Field) -> tuple[Field, Field]:
+        """Return P and dP/dq."""
+        (x1, _, z1), (x2, _, z2) = self.axes
+        along1, along2 = self.kappa * x1 + q * z1, self.kappa * x2 + q * z2
+        p = self.mean * (self.kappa * self.kappa + q * q) + self.half * along1 * along2 - 1.0
+        return p, 2.0 * self.mean * q + self.half * (z1 * along2 + z2 * along1)
+
+    def square(self, which: int, q: Field) -> tuple[Field, Field]:
+        """Return |k × o|² of an optic axis, without conjugation, as a sum of squares, and its derivative."""
+        x, y, z = self.axes[which]
+        y2 = y * y
+        lever = q * x - self.kappa * z
+        return y2 * (self.kappa * self.kappa + q * q) + lever * lever, 2.0 * (y2 * q + x * lever)
+
+    def quadratics(self) -> Quadratics:
+        """Return Fresnel's quartic in q as two quadratics."""
+        (x1, y1, z1), (x2, y2, z2) = self.axes
+        kappa, half = self.kappa, self.half
+        kappa2 = kappa * kappa
+        p2 = self.mean + half * z1 * z2
+        p1 = half * kappa * (x1 * z2 + z1 * x2)
+        p0 = kappa2 * (self.mean + half * x1 * x2) - 1.0
+        # W = q²·f − 2 q·g + h for each axis
+        f1, g1, h1 = x1 * x1 + y1 * y1, kappa * x1 * z1, kappa2 * (y1 * y1 + z1 * z1)
+        f2, g2, h2 = x2 * x2 + y2 * y2, kappa * x2 * z2, kappa2 * (y2 * y2 + z2 * z2)
+        w = half * half
+        lead = p2 * p2 - w * f1 * f2
+        return real_quadratics(
+            2.0 * (p2 * p1 + w * (f1 * g2 + g1 * f2)) / lead,
+            (p1 * p1 + 2.0 * p2 * p0 - w * (f1 * h2 + h1 * f2 + 4.0 * g1 * g2)) / lead,
+            2.0 * (p1 * p0 + w * (g1 * h2 + h1 * g2)) / lead,
+            (p0 * p0 - w * h1 * h2) / lead,
+        )
+
+    def refined(self, q: Real, branch: Real | float, steps: int) -> Real:
+        """Return real roots after some steps of Newton's method on F = P + branch·W; −1 is slow, +1 fast."""
+        weight = branch * self.half
+        for _ in range(steps):
+            p, dp = self.smooth(q)
+            first, d_first = self.square(0, q)
+            second, d_second = self.square(1, q)
+            w = np.sqrt(first * second)
+            slope = dp + weight * (d_first * second + first * d_second) / (2.0 * np.maximum(w, TINY))
+            # At a grazing wave F touches zero: q is then as good as it gets.
+            q = q - np.where(slope != 0.0, p + weight * w, 0.0) / np.where(slope != 0.0, slope, 1.0)
+        return np.asarray(q)
+
+    def refined_complex(self, q: Complex, steps: int) -> tuple[Complex, Real]:
+        """Return complex roots after some steps of Newton's method, and the branch of each: F = P + branch·√Q₁·√Q₂."""
+        p, _ = self.smooth(q)
+        w = self.half * self._root(q)
+        branch = np.where(np.abs(p + w) < np.abs(p - w), 1.0, -1.0)
+        for _ in range(steps):
+            p, dp = self.smooth(q)
+            first, d_first = self.square(0, q)
+            second, d_second = self.square(1, q)
+            w = np.sqrt(first) * np.sqrt(second)
+            flat = w == 0.0
+            slope = dp + branch * self.half * (d_first * second + first * d_second) / np.where(flat, 1.0, 2.0 * w)
+            q = q - np.where(slope != 0.0, p + branch * self.half * w, 0.0) / np.where(slope != 0.0, slope, 1.0)
+        return np.asarray(q, np.result_type(q, np.complex64)), branch
+
+    def near_axis(self, q: Real, which: int) -> tuple[Real, Real]:
+        """Return the slow and the fast root near q where k all but points along an optic axis.
+
+        There |k × o| = √Q turns a corner as fast as q changes, while P is all but linear and the other axis far: P
+        linear, the other factor constant and Q whole leave one quadratic, (P + P′x)² = ½²(α⁻² − γ⁻²)² Q′(Q + …).
+        """
+        p, dp = self.smooth(q)
+        square, d_square = self.square(which, q)
+        x, y, _ = self.axes[which]
+        lead = x * x + y * y
+        weight = self.half * self.half * self.square(1 - which, q)[0]
+        a = dp * dp - weight * lead
+        b = p * dp - 0.5 * weight * d_square
+        # b² − a·c with what cancels taken out by hand.
+        tilted = lead * p * p - p * dp * d_square + dp * dp * square
+        root = np.sqrt(np.maximum(weight * (tilted - weight * (self.kappa * y) ** 2), 0.0))
+        safe = np.where(a != 0.0, a, 1.0)
+        one, two = (-b + root) / safe, (-b - root) / safe
+        first_is_slow = p + dp * one >= p + dp * two
+        return np.where(first_is_slow, q + one, q + two), np.where(first_is_slow, q + two, q + one)
+
+    def _root(self, q: Complex) -> Complex:
+        return np.asarray(np.sqrt(self.square(0, q)[0]) * np.sqrt(self.square(1, q)[0]))
