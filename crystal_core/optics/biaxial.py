@@ -15,6 +15,8 @@ the slow wave is at right angles to it (Born & Wolf, Principles of Optics, 7th e
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from crystal_core.optics.arrays import BoolArray, Field, Rays, Real
@@ -38,6 +40,12 @@ ONE_FRAME = 1e-2
 
 ON_AXIS = 45.0
 """Angle, in units of rounding, below which a wave travels along an optic axis and any direction across it serves."""
+
+SLANTING = 0.1
+"""|g(ψ, ψ)|/|E|² below which a wave is made orthogonal to its neighbours."""
+
+LARGEST_SHARE = 1e-2
+"""Largest share of a wave in another that is taken for rounding."""
 
 SLOW, FAST = -1.0, 1.0
 
@@ -119,6 +127,12 @@ class FramedBiaxial(FramedMedium):
             modes = self._mode(q0, branch0, branch0 == SLOW), self._mode(q1, branch1, branch1 == SLOW)
         self._make_orthogonal(modes)
         return modes
+
+    def both_pairs(self, evanescent: bool) -> tuple[tuple[Mode, Mode], tuple[Mode, Mode]]:
+        """Return the pairs of `pair` for +1 and for −1, orthogonal to each other to rounding."""
+        ahead, back = self.pair(+1, evanescent), self.pair(-1, evanescent)
+        _balance((*ahead, *back))
+        return ahead, back
 
     def _refined(self, forward: bool) -> tuple[Real, Real]:
         """Return the real roots of both modes to rounding; they mean nothing where a wave is evanescent."""
@@ -214,8 +228,37 @@ class FramedBiaxial(FramedMedium):
         norm = a.norm()
         grazing = np.abs(norm) <= np.sqrt(np.finfo(q.dtype).eps) * _square_of_field(a)
         share = np.where(grazing, 0.0, bilinear(a, b)) / np.where(grazing, 1.0, norm)
-        for name in ("ex", "ey", "ez", "hx", "hy"):
-            getattr(second, name)[rays] -= share * getattr(a, name)
+        for values, change in zip(_components(second), _components(a), strict=True):
+            values[rays] -= share * change
+
+
+def _balance(modes: tuple[Mode, Mode, Mode, Mode]) -> None:
+    """Make waves orthogonal that slant so much that their roots have lost digits.
+
+    A wave of flux f has its root within rounding/f, and a share of the other waves in it of the same order, by which
+    energy would be off. Half of it is taken from either (Löwdin's symmetric step), which leaves the square of it.
+    """
+    norms = [np.abs(mode.norm()) for mode in modes]
+    slants = [norm < SLANTING * _square_of_field(mode) for norm, mode in zip(norms, modes, strict=True)]
+    rays = np.flatnonzero(slants[0] | slants[1] | slants[2] | slants[3])
+    if not rays.size:
+        return
+    parts = [_selected(mode, rays) for mode in modes]
+    own = [part.norm() for part in parts]
+    steps: list[list[Field]] = [[np.zeros_like(value) for value in _components(part)] for part in parts]
+    for i, j in itertools.permutations(range(4), 2):
+        overlap = 0.5 * bilinear(parts[i], parts[j])
+        # Two waves that all but coincide (exactly grazing) are no pair to be told apart.
+        small = np.abs(overlap) <= LARGEST_SHARE * np.minimum(np.abs(own[i]), np.abs(own[j]))
+        share = np.where(small, overlap, 0.0) / np.where(small & (own[j] != 0.0), own[j], 1.0)
+        steps[i] = [step + share * value for step, value in zip(steps[i], _components(parts[j]), strict=True)]
+    for mode, changes in zip(modes, steps, strict=True):
+        for values, change in zip(_components(mode), changes, strict=True):
+            values[rays] -= change
+
+
+def _components(mode: Mode) -> list[Field]:
+    return [v for v in (mode.ex, mode.ey, mode.ez, mode.hx, mode.hy) if v is not None]
 
 
 def _selected(mode: Mode, rays: Rays) -> Mode:
@@ -229,7 +272,6 @@ def _selected(mode: Mode, rays: Rays) -> Mode:
 
 def _square_of_field(mode: Mode) -> Real:
     total = np.zeros(mode.q.shape)
-    for component in (mode.ex, mode.ey, mode.ez):
-        if component is not None:
-            total = total + np.abs(component) ** 2
+    for component in _components(mode)[:3]:
+        total = total + np.abs(component) ** 2
     return total

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crystal_core.optics import Coherency, InterfaceFrame, Medium, absorption_along_ray, interface_frame
+from crystal_core.optics import Coherency, InterfaceFrame, Medium, interface_frame
 from crystal_core.optics.arrays import Complex, Field, columns, dot
 from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.interface import solve_face
@@ -69,7 +69,7 @@ class IsotropicEvents:
         importance = Coherency(*rays.importance)
         if crystal.absorption_per_mm is not None:
             length = distance * np.sqrt(dot(rays.ray, rays.ray))
-            dimmed = np.exp(-length * absorption_along_ray(crystal, rays.k, extraordinary=False))
+            dimmed = np.exp(-length * crystal.absorption_per_mm[0])
             importance = Coherency(*(dimmed * row for row in rays.importance))
         z = columns(self._normals, exit_face)
         outward = dot(rays.k, z)

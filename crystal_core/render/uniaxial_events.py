@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crystal_core.optics import InterfaceFrame, Medium, absorption_along_ray, interface_frame
 from crystal_core.optics.arrays import columns, dot
+from crystal_core.optics.directions import waves_along
 from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.interface import Face, solve_face
@@ -82,7 +83,8 @@ class UniaxialEvents:
         importance = rays.importance[0]
         if medium.absorption_per_mm is not None:
             length = distance * np.sqrt(dot(rays.ray, rays.ray))
-            importance = importance * np.exp(-length * absorption_along_ray(medium, rays.k, mode == 1))
+            field = waves_along(medium, rays.k / np.sqrt(dot(rays.k, rays.k)))[mode].e
+            importance = importance * np.exp(-length * absorption_along_ray(medium, rays.k, field))
         z = columns(self._normals, exit_face)
         tangential = rays.k - dot(rays.k, z) * z
         frame = interface_frame(z, tangential)
