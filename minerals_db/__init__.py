@@ -16,7 +16,8 @@ from minerals_db.errors import DataFault, MineralDataError, UnknownMineralError
 
 if TYPE_CHECKING:
     from minerals_db.dispersion import Dispersion
-    from minerals_db.schema import Cell, Cleavage, Mineral, Names, Source, Status
+    from minerals_db.optical_rotation import OpticalRotation
+    from minerals_db.schema import Cell, Cleavage, Mineral, Names, Orientation, Source, Status
     from minerals_db.store import load_minerals
 
 __all__ = [
@@ -27,6 +28,8 @@ __all__ = [
     "Mineral",
     "MineralDataError",
     "Names",
+    "OpticalRotation",
+    "Orientation",
     "Source",
     "Status",
     "UnknownMineralError",
@@ -42,6 +45,8 @@ _LAZY = {
     "Dispersion": "minerals_db.dispersion",
     "Mineral": "minerals_db.schema",
     "Names": "minerals_db.schema",
+    "OpticalRotation": "minerals_db.optical_rotation",
+    "Orientation": "minerals_db.schema",
     "Source": "minerals_db.schema",
     "Status": "minerals_db.schema",
     "load_minerals": "minerals_db.store",

@@ -4,41 +4,26 @@ One frozen model per kind of curve, told apart in the data by ``model``. The for
 refractiveindex.info database (M. N. Polyanskiy, Sci. Data 11, 94 (2024), doi:10.1038/s41597-023-02898-2), with λ in µm,
 so that published coefficients go in with their own digits. Indices are relative to air, as the sources give them
 (vacuum or air wavelength differ by 3e-4 λ, which moves an index by less than 1e-4 even in diamond).
-
-**Range.** A curve is known only inside its ``range_nm``. Outside it the value at the nearer end is returned: formulas
-are meaningless near their poles, and a constant is the one continuation that cannot run away.
 """
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
-from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from abc import abstractmethod
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 from pydantic import Field, model_validator
 
-from minerals_db.fields import Entry, Known, Number, Positive
-
-if TYPE_CHECKING:
-    from scipy.interpolate import PchipInterpolator
+from minerals_db.curve import Curve, FloatArray, Table
+from minerals_db.fields import Entry, Number, Positive
 
 __all__ = ["AnyDispersion", "Dispersion", "ResonancesAndPowers", "Sellmeier1", "Sellmeier2", "TabulatedIndex"]
 
-FloatArray = npt.NDArray[np.float64]
 
-
-class Dispersion(Known, ABC):
+class Dispersion(Curve):
     """A refractive index as a function of the wavelength; the base of every kind of curve."""
-
-    range_nm: Annotated[tuple[Positive, Positive], Field(description="Shortest and longest wavelength known, nm")]
-    temperature_celsius: Number | None = Field(None, description="Temperature of the specimen, if the source says it")
-
-    @abstractmethod
-    def _index(self, wavelength_um: FloatArray) -> FloatArray:
-        """Return the index at wavelengths (µm) inside the range; elementwise."""
 
     def index(self, wavelength_nm: npt.ArrayLike) -> FloatArray:
         """Return the refractive index.
@@ -53,19 +38,7 @@ class Dispersion(Known, ABC):
         float64 array, shape (...)
             Indices relative to air. Each is computed by itself: its bits do not depend on its neighbours.
         """
-        shortest, longest = self.range_nm
-        clamped = np.clip(np.asarray(wavelength_nm, dtype=np.float64), shortest, longest)
-        return np.asarray(self._index(clamped * 1e-3), dtype=np.float64)
-
-    def covers(self, shortest_nm: float, longest_nm: float) -> bool:
-        """Tell whether the curve is known over the whole interval (nm), so that nothing is clamped."""
-        return self.range_nm[0] <= shortest_nm and longest_nm <= self.range_nm[1]
-
-    @model_validator(mode="after")
-    def _range_is_ordered(self) -> Self:
-        if self.range_nm[0] >= self.range_nm[1]:
-            raise ValueError(f"range_nm must rise, not {self.range_nm[0]:g} to {self.range_nm[1]:g}")
-        return self
+        return self._at(wavelength_nm)
 
 
 class _Formula(Dispersion):
@@ -75,7 +48,8 @@ class _Formula(Dispersion):
     def _squared(self, squared_um2: FloatArray) -> FloatArray:
         """Return n² at λ² (µm²)."""
 
-    def _index(self, wavelength_um: FloatArray) -> FloatArray:
+    def _value(self, wavelength_nm: FloatArray) -> FloatArray:
+        wavelength_um = wavelength_nm * 1e-3
         return np.asarray(np.sqrt(self._squared(wavelength_um * wavelength_um)), dtype=np.float64)
 
     @abstractmethod
@@ -198,33 +172,13 @@ class ResonancesAndPowers(_Formula):
         return tuple(term.pole_um2 for term in self.resonances)
 
 
-class TabulatedIndex(Dispersion):
-    """Measured indices, joined by monotone cubics (PCHIP; Fritsch and Carlson, SIAM J. Numer. Anal. 17, 238 (1980))."""
+class TabulatedIndex(Table, Dispersion):
+    """Measured indices, joined by monotone cubics."""
+
+    values_field: ClassVar[str] = "indices"
 
     model: Literal["table"]
-    wavelengths_nm: tuple[Positive, ...] = Field(min_length=2, description="Rising, from end to end of range_nm")
     indices: tuple[Positive, ...] = Field(min_length=2, description="One for each wavelength")
-
-    @model_validator(mode="after")
-    def _is_a_table(self) -> Self:
-        if len(self.wavelengths_nm) != len(self.indices):
-            raise ValueError(f"{len(self.wavelengths_nm)} wavelengths_nm but {len(self.indices)} indices")
-        if any(later <= earlier for earlier, later in zip(self.wavelengths_nm, self.wavelengths_nm[1:], strict=False)):
-            raise ValueError("wavelengths_nm must rise")
-        if self.range_nm != (self.wavelengths_nm[0], self.wavelengths_nm[-1]):
-            raise ValueError("range_nm must be the first and the last of wavelengths_nm")
-        return self
-
-    @cached_property
-    def _curve(self) -> PchipInterpolator:
-        from scipy.interpolate import PchipInterpolator  # 0.3 s: only for those who use a table
-
-        return PchipInterpolator(np.asarray(self.wavelengths_nm), np.asarray(self.indices))
-
-    def _index(self, wavelength_um: FloatArray) -> FloatArray:
-        # The clamp was in nm; going to µm and back can leave the table by one rounding, and PCHIP then extrapolates.
-        nm = np.clip(wavelength_um * 1e3, *self.range_nm)
-        return np.asarray(self._curve(nm), dtype=np.float64)
 
 
 AnyDispersion = Annotated[

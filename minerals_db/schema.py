@@ -9,14 +9,16 @@ be trusted in its symmetry.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from minerals_db.dispersion import AnyDispersion
 from minerals_db.fields import Entry, Key, Known, Positive, Status, Text
+from minerals_db.optical_rotation import OpticalRotation
 from minerals_db.symmetry import (
     CELL_SHAPE,
+    GYROTROPIC_ALONG_AXIS,
     OPTICAL_CLASS,
     POINT_GROUPS,
     PRINCIPAL_AXES,
@@ -25,12 +27,13 @@ from minerals_db.symmetry import (
     PointGroup,
 )
 
-__all__ = ["SODIUM_D_NM", "Cell", "Cleavage", "Mineral", "Names", "Source", "Status"]
+__all__ = ["SODIUM_D_NM", "Cell", "Cleavage", "Mineral", "Names", "Orientation", "Source", "Status"]
 
 SODIUM_D_NM = 589.3
-"""The wavelength at which optic signs are checked: the mean of the sodium D lines, nm."""
+"""The wavelength at which optic signs and orientations are checked: the mean of the sodium D lines, nm."""
 
 Angle = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0, lt=180.0)]
+CrystalAxis = Literal["a", "b", "c"]
 Hkl = tuple[Annotated[int, Field(strict=True)], Annotated[int, Field(strict=True)], Annotated[int, Field(strict=True)]]
 
 
@@ -80,6 +83,26 @@ class Cleavage(Known):
         return hkl
 
 
+class Orientation(Known):
+    """Which axis of the cell waves of each principal index vibrate along, at the D line: X, Y, Z of mineralogists.
+
+    The curves of `dispersion` are keyed by the same axes, so that this says again what they say; it carries the source
+    of the orientation, which is seldom that of the indices. The axes are those of `cell`: settings differ in books.
+    """
+
+    alpha: CrystalAxis = Field(description="Axis of the smallest index, X")
+    beta: CrystalAxis = Field(description="Axis of the middle index, Y")
+    gamma: CrystalAxis = Field(description="Axis of the largest index, Z")
+
+    @model_validator(mode="after")
+    def _names_each_axis_once(self) -> Self:
+        if len({self.alpha, self.beta, self.gamma}) != 3:
+            raise ValueError(
+                f"alpha, beta, gamma must be a, b, c in some order, not {self.alpha}{self.beta}{self.gamma}"
+            )
+        return self
+
+
 class Mineral(Entry):
     """A mineral or a variety of one."""
 
@@ -95,6 +118,12 @@ class Mineral(Entry):
     )
     optic_sign: Literal["positive", "negative"] | None = Field(
         None, validate_default=True, description="Of the birefringence; None where isotropic"
+    )
+    orientation: Orientation | None = Field(
+        None, validate_default=True, description="Of the indicatrix of an orthorhombic mineral; None for others"
+    )
+    optical_rotation: OpticalRotation | None = Field(
+        None, description="Optical activity; None if it has none or unknown"
     )
     cleavage: tuple[Cleavage, ...] = ()
     sources: Mapping[Key, Source] = Field(description="Every source that this entry names, by key")
@@ -155,8 +184,46 @@ class Mineral(Entry):
             raise ValueError("an isotropic mineral has no optic sign")
         if optical_class in ("uniaxial", "biaxial") and sign is None:
             raise ValueError(f"a {optical_class} mineral has an optic sign, positive or negative")
-        if optical_class == "uniaxial" and dispersion is not None:
-            n_o, n_e = (float(dispersion[axis].index(SODIUM_D_NM)) for axis in ("o", "e"))
-            if n_o != n_e and (n_e > n_o) != (sign == "positive"):
-                raise ValueError(f"{sign}, but n_o is {n_o:.5f} and n_e is {n_e:.5f} at {SODIUM_D_NM} nm")
+        if dispersion is None or optical_class == "isotropic":
+            return sign
+        n = {axis: float(curve.index(SODIUM_D_NM)) for axis, curve in dispersion.items()}
+        told = ", ".join(f"n_{axis} is {n[axis]:.5f}" for axis in sorted(n, reverse="o" in n))
+        if optical_class == "uniaxial" and n["o"] != n["e"] and (n["e"] > n["o"]) != (sign == "positive"):
+            raise ValueError(f"{sign}, but {told} at {SODIUM_D_NM} nm")
+        if optical_class == "biaxial" and _is_biaxial_positive(tuple(n.values())) != (sign == "positive"):
+            raise ValueError(f"{sign}, but {told} at {SODIUM_D_NM} nm")
         return sign
+
+    @field_validator("orientation")
+    @classmethod
+    def _orientation_agrees(cls, orientation: Orientation | None, info: ValidationInfo) -> Orientation | None:
+        system: CrystalSystem | None = info.data.get("system")
+        dispersion: Mapping[str, AnyDispersion] | None = info.data.get("dispersion")
+        if system is None or dispersion is None:
+            return orientation
+        if (system == "orthorhombic") != (orientation is not None):
+            raise ValueError("an orthorhombic mineral has an orientation, and no other has")
+        if orientation is not None:
+            axes = (orientation.alpha, orientation.beta, orientation.gamma)
+            n = [float(dispersion[axis].index(SODIUM_D_NM)) for axis in axes]
+            if n != sorted(n):
+                told = ", ".join(f"n_{axis} is {value:.5f}" for axis, value in zip(axes, n, strict=True))
+                raise ValueError(f"the indices must rise from alpha to gamma, but {told} at {SODIUM_D_NM} nm")
+        return orientation
+
+    @field_validator("optical_rotation")
+    @classmethod
+    def _symmetry_allows_rotation(
+        cls, rotation: OpticalRotation | None, info: ValidationInfo
+    ) -> OpticalRotation | None:
+        group: PointGroup | None = info.data.get("point_group")
+        if rotation is not None and group is not None and group not in GYROTROPIC_ALONG_AXIS:
+            allowed = ", ".join(sorted(GYROTROPIC_ALONG_AXIS))
+            raise ValueError(f"class {group} turns nothing along an optic axis; those that do are {allowed}")
+        return rotation
+
+
+def _is_biaxial_positive(indices: tuple[float, ...]) -> bool:
+    """Tell whether γ is the acute bisectrix, tan² V_z = (α⁻² − β⁻²)/(β⁻² − γ⁻²) < 1 (Born & Wolf, §15.3.3, eq. 11)."""
+    alpha, beta, gamma = sorted(indices)
+    return alpha**-2 - beta**-2 < beta**-2 - gamma**-2

@@ -69,8 +69,8 @@ def _faults(name: str, error: ValidationError) -> Iterator[DataFault]:
     """Translate pydantic's list into places of the file and plain words."""
     for fault in error.errors(include_url=False, include_context=False, include_input=False):
         place = list(fault["loc"])
-        if place[:1] == ["dispersion"] and len(place) > 2:
-            del place[2]  # the name of the curve's model, which is no field
+        if place[:1] == ["dispersion"] or place[:2] == ["optical_rotation", "along_axis"]:
+            del place[2:3]  # the name of the curve's model, which is no field
         reason = {"extra_forbidden": "unknown field", "missing": "missing"}.get(fault["type"], fault["msg"])
         yield DataFault(name, ".".join(map(str, place)), reason.removeprefix("Value error, "))
 

@@ -8,6 +8,7 @@ from typing import Literal
 
 __all__ = [
     "CELL_SHAPE",
+    "GYROTROPIC_ALONG_AXIS",
     "OPTICAL_CLASS",
     "POINT_GROUPS",
     "PRINCIPAL_AXES",
@@ -65,7 +66,13 @@ PRINCIPAL_AXES: Mapping[CrystalSystem, frozenset[str]] = MappingProxyType(
         "orthorhombic": frozenset({"a", "b", "c"}),
     }
 )
-"""Names of the principal indices. Monoclinic and triclinic ones need an orientation that the schema cannot hold yet."""
+"""Names of the principal indices. Monoclinic and triclinic ones need a rotation against the lattice, which the schema
+cannot hold yet."""
+
+
+GYROTROPIC_ALONG_AXIS: frozenset[PointGroup] = frozenset({"3", "32", "4", "422", "6", "622"})
+"""The classes of uniaxial crystals that turn the plane of polarization along their optic axis (Nye, Physical Properties
+of Crystals, 1957, ch. 14, table 20). −4 and −42m are active too, but not along the axis."""
 
 
 class CellShape:

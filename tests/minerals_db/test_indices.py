@@ -73,6 +73,14 @@ FIGURES = [
     ("sphalerite", "n", 500.0, 2.4208, 4e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
     ("sphalerite", "n", 600.0, 2.3640, 2e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
     ("sphalerite", "n", 700.0, 2.3333, 2e-3, "W. L. Bond, J. Appl. Phys. 36, 1674 (1965)"),
+    # Our tables: Rudberg 1828-31.
+    ("aragonite", "c", D, 1.5295, 1e-3, "mindat.org, Aragonite"),
+    ("aragonite", "a", D, 1.6810, 1e-3, "mindat.org, Aragonite"),
+    ("aragonite", "b", D, 1.6855, 1e-3, "mindat.org, Aragonite"),
+    # Our coefficients: synthetic alexandrite, pure but for chromium; theirs: natural, with iron, which raises indices.
+    ("chrysoberyl", "c", D, 1.745, 6e-3, "Wikipedia, Chrysoberyl, after handbooks"),
+    ("chrysoberyl", "a", D, 1.748, 6e-3, "Wikipedia, Chrysoberyl, after handbooks"),
+    ("chrysoberyl", "b", D, 1.754, 6e-3, "Wikipedia, Chrysoberyl, after handbooks"),
     # Our coefficients: Stephens and Malitson 1952 (synthetic).
     ("periclase", "n", D, 1.736, 2e-3, "Handbook of Mineralogy: 1.735 to 1.745; from memory"),
 ]
@@ -84,22 +92,25 @@ def test_index(mineral: str, axis: str, nm: float, index: float, tolerance: floa
     assert found == pytest.approx(index, abs=tolerance), source
 
 
-# birefringence n_e - n_o at the D line and its tolerance, from a source other than our coefficients'
+# birefringence at the D line between two axes, and its tolerance, from a source other than our coefficients'
 BIREFRINGENCE = [
-    ("calcite", -0.17195, 3e-4, "Martens 1901; from memory"),
-    ("quartz", 0.00911, 3e-5, "classical textbook value; from memory"),
-    ("corundum", -0.008, 5e-4, "gemmological constant of sapphire (Schumann, Gemstones of the World)"),
-    ("sellaite", 0.012, 5e-4, "Handbook of Mineralogy"),
-    ("fluorapatite", -0.003, 1.5e-3, "The Gemology Project, Apatite: 0.003"),
-    ("rutile", 0.292, 5e-3, "Handbook of Mineralogy: 2.605 to 2.613, 2.899 to 2.901"),
-    ("paratellurite", 0.1557, 5e-4, "Elent-A at 589.3 nm: 2.2738, 2.4295"),
+    ("calcite", "eo", -0.17195, 3e-4, "Martens 1901; from memory"),
+    ("quartz", "eo", 0.00911, 3e-5, "classical textbook value; from memory"),
+    ("corundum", "eo", -0.008, 5e-4, "gemmological constant of sapphire (Schumann, Gemstones of the World)"),
+    ("sellaite", "eo", 0.012, 5e-4, "Handbook of Mineralogy"),
+    ("fluorapatite", "eo", -0.003, 1.5e-3, "The Gemology Project, Apatite: 0.003"),
+    ("rutile", "eo", 0.292, 5e-3, "Handbook of Mineralogy: 2.605 to 2.613, 2.899 to 2.901"),
+    ("paratellurite", "eo", 0.1557, 5e-4, "Elent-A at 589.3 nm: 2.2738, 2.4295"),
+    ("aragonite", "bc", 0.156, 5e-4, "mindat.org, Aragonite: 1.5295, 1.6855"),
+    ("topaz", "ca", 0.0095, 1.5e-3, "Mineralogía óptica, Topacio: 0.008 to 0.011"),
+    ("chrysoberyl", "bc", 0.009, 1.5e-3, "Wikipedia, Chrysoberyl, after handbooks: 1.745, 1.754"),
 ]
 
 
-@pytest.mark.parametrize(("mineral", "birefringence", "tolerance", "source"), BIREFRINGENCE)
-def test_birefringence(mineral: str, birefringence: float, tolerance: float, source: str) -> None:
+@pytest.mark.parametrize(("mineral", "axes", "birefringence", "tolerance", "source"), BIREFRINGENCE)
+def test_birefringence(mineral: str, axes: str, birefringence: float, tolerance: float, source: str) -> None:
     dispersion = minerals_db.mineral(mineral).dispersion
-    found = float(dispersion["e"].index(D) - dispersion["o"].index(D))
+    found = float(dispersion[axes[0]].index(D) - dispersion[axes[1]].index(D))
     assert found == pytest.approx(birefringence, abs=tolerance), source
 
 
@@ -109,6 +120,13 @@ def test_fluorapatite_lies_where_apatites_do() -> None:
         assert 1.63 < float(curve.index(D)) < 1.64
 
 
+def test_topaz_lies_where_topazes_do() -> None:
+    # Mineralogía óptica, Topacio.
+    ranges = {"a": (1.606, 1.634), "b": (1.609, 1.637), "c": (1.616, 1.644)}
+    for axis, (least, most) in ranges.items():
+        assert least < float(minerals_db.mineral("topaz").dispersion[axis].index(D)) < most
+
+
 # n_F - n_C from a source other than our coefficients', relative tolerance
 DISPERSION = [
     ("fluorite", "n", 0.00456, 0.01, "Daimon and Masumura 2002"),
@@ -116,7 +134,8 @@ DISPERSION = [
     ("quartz", "e", 0.00804, 0.01, "Radhakrishnan 1951"),
     ("spinel", "n", 0.01180, 0.02, "Tropf and Thomas 1991"),
     ("halite", "n", 0.01274, 0.02, "Baden Powell, in Beer 1853"),
-    # Gem books give B-G 0.044; over C-F it is 0.58 of that.
+    # Gem books give B-G; over C-F it is 0.58 of that.
+    ("topaz", "b", 0.58 * 0.014, 0.1, "Schumann, Gemstones of the World, B-G 0.014"),
     ("diamond", "n", 0.58 * 0.044, 0.05, "Schumann, Gemstones of the World, B-G 0.044"),
 ]
 
@@ -144,4 +163,5 @@ def test_dispersion_is_normal_in_the_visible(mineral: str) -> None:
 @pytest.mark.parametrize("mineral", minerals_db.minerals())
 def test_most_of_the_visible_is_covered(mineral: str) -> None:
     for curve in minerals_db.mineral(mineral).dispersion.values():
-        assert curve.covers(430.0, 750.0)
+        # To 686.7 nm, Fraunhofer's B, where the old tables end: beyond it lies 1/2000 of the luminance of daylight.
+        assert curve.covers(430.0, 686.7)

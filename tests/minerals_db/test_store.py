@@ -190,7 +190,11 @@ def test_entries_agree_with_their_symmetry(mineral_id: str) -> None:
     assert mineral.id == mineral_id
     assert mineral.point_group in POINT_GROUPS[mineral.system]
     assert mineral.optical_class == OPTICAL_CLASS[mineral.system]
-    assert set(mineral.dispersion) == ({"n"} if mineral.optical_class == "isotropic" else {"o", "e"})
+    assert (
+        "".join(sorted(mineral.dispersion))
+        == {"isotropic": "n", "uniaxial": "eo", "biaxial": "abc"}[mineral.optical_class]
+    )
+    assert (mineral.orientation is None) == (mineral.system != "orthorhombic")
     assert (mineral.optic_sign is None) == (mineral.optical_class == "isotropic")
     if mineral.optical_class == "uniaxial":
         assert mineral.system in ("trigonal", "tetragonal", "hexagonal")
