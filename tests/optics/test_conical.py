@@ -102,7 +102,6 @@ def test_each_vibration_of_the_axial_wave_has_its_ray(name: str, which: Literal[
 def test_the_cone_is_a_skew_circular_one_through_its_axis(
     name: str, which: Literal[0, 1], make: Callable[[Medium, int], Cone]
 ) -> None:
-
     cone = make(MEDIA[name], which)
     psi = np.linspace(0.0, np.pi, 37)
     directions = cone.directions(psi)
@@ -114,6 +113,7 @@ def test_the_cone_is_a_skew_circular_one_through_its_axis(
     points = directions / (cone.axis @ directions) - cone.centre()[:, None]
     x, y = cone.vibrations(np.array([0.0, 0.5 * np.pi])).T
     np.testing.assert_allclose(np.unwrap(np.arctan2(y @ points, x @ points)), 2 * psi, atol=1e-11)
+    np.testing.assert_allclose(np.cross(x, y), cone.axis, atol=1e-15)
     # The whole angle is that between the axis and the far side of the circle, both in the plane of the optic axes.
     far = np.arctan2(np.linalg.norm(np.cross(cone.axis, directions[:, 0])), cone.axis @ directions[:, 0])
     assert far == pytest.approx(cone.aperture(), rel=1e-10)
