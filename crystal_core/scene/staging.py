@@ -18,9 +18,20 @@ from crystal_core.scene.description import Camera, Page, Scene, Shape
 from crystal_core.scene.printed_page import printed_digits
 from crystal_core.scene.texture import MAX_PIXELS, Texture, decode_texture, read_asset
 
-__all__ = ["StagedCamera", "StagedPage", "StagedScene", "StagedSpecimen", "cleavage_pole_deg", "stage"]
+__all__ = [
+    "RENDERED_CLASSES",
+    "StagedCamera",
+    "StagedPage",
+    "StagedScene",
+    "StagedSpecimen",
+    "cleavage_pole_deg",
+    "stage",
+]
 
 Real = NDArray[np.float64]
+
+RENDERED_CLASSES = ("isotropic", "uniaxial")
+"""The optical classes of the crystals that can be rendered yet."""
 
 TEXELS_PER_MARK = 8.0
 """Texels across a mark at least: its covered rim then keeps its centre to a hundredth of a texel."""
@@ -144,12 +155,17 @@ def cleavage_pole_deg(mineral: minerals_db.Mineral) -> float:
 
 
 def _specimen(scene: Scene) -> StagedSpecimen:
-    try:
-        mineral = minerals_db.mineral(scene.specimen.mineral)
-    except minerals_db.UnknownMineralError as error:
-        raise InputError.at("/specimen/mineral", str(error)) from error
-    if mineral.optical_class == "biaxial":
-        raise InputError.at("/specimen/mineral", f"{mineral.id} is biaxial: only isotropic and uniaxial crystals yet")
+    wanted = scene.specimen.mineral
+    known = minerals_db.minerals()
+    if wanted not in known:
+        rendered = (name for name, entry in known.items() if entry.optical_class in RENDERED_CLASSES)
+        raise InputError.at("/specimen/mineral", str(minerals_db.UnknownMineralError(wanted, rendered)))
+    mineral = known[wanted]
+    if mineral.optical_class not in RENDERED_CLASSES:
+        raise InputError.at(
+            "/specimen/mineral",
+            f"{wanted} is {mineral.optical_class}: only {' and '.join(RENDERED_CLASSES)} crystals can be rendered yet",
+        )
     body, axis = _body(scene.specimen.shape, mineral)
     lowest = float(body.vertices[:, 2].min())
     body = body.transformed(np.eye(3), np.array((0.0, 0.0, scene.specimen.gap_mm - lowest)))

@@ -11,6 +11,7 @@ from pydantic import Field
 from crystal_core.materials import SODIUM_D_NM
 from crystal_core.scene import Camera, Page, PointLight, Scene, Shape, Sky, Specimen, StagedScene
 from crystal_core.scene.description import AnalyserAngle
+from crystal_core.scene.staging import RENDERED_CLASSES
 from crystal_core.sequence.demonstration import Demonstration, Parameters
 
 __all__ = ["ROTATING_CALCITE", "RotatingCalcite"]
@@ -54,7 +55,8 @@ class RotatingCalcite(Parameters):
         "calcite",
         title="Mineral",
         description="Id of an isotropic or uniaxial mineral of the database.",
-        json_schema_extra=_extra("Mineral", "Минерал", SPECIMEN, **{"x-choices": "minerals"}),
+        json_schema_extra=_extra("Mineral", "Минерал", SPECIMEN)
+        | {"x-choices": "minerals", "x-optical-classes": list(RENDERED_CLASSES)},
     )
     cut: Literal["block", "cleavage"] = Field(
         "block",

@@ -4,6 +4,7 @@ import pickle
 
 import pytest
 
+import minerals_db
 from crystal_core.errors import InputError
 from crystal_core.sequence import demonstrations, parse_request
 
@@ -41,6 +42,11 @@ def _faults(obj: dict[str, object]) -> dict[str, str]:
         ({"demonstration": NAME, "parameters": []}, "/parameters", "dictionary"),
         ({"demonstration": NAME, "parameters": {"minerals": "calcite"}}, "/parameters/minerals", "unknown key"),
         ({"demonstration": NAME, "parameters": {"mineral": "kryptonite"}}, "/parameters/mineral", "calcite"),
+        (
+            {"demonstration": NAME, "parameters": {"mineral": "aragonite"}},
+            "/parameters/mineral",
+            "aragonite is biaxial",
+        ),
         ({"demonstration": NAME, "parameters": {"size_mm": [1, 2, "x"]}}, "/parameters/size_mm/2", "number"),
         ({"demonstration": NAME, "parameters": {"gap_mm": float("nan")}}, "/parameters/gap_mm", ""),
         ({"demonstration": NAME, "parameters": {"marks": [[0, 0], [90, 0]]}}, "/parameters/marks/1", "page"),
@@ -79,6 +85,25 @@ def test_the_digest_tells_requests_apart() -> None:
     assert parse_request({"demonstration": NAME, "parameters": {"mineral": "calcite"}, "frames": 36}).digest() == base
     for change in ({"seed": 1}, {"quality": "draft"}, {"parameters": {"gap_mm": 0.03}}, {"size": [512, 511]}):
         assert parse_request({"demonstration": NAME, **change}).digest() != base
+
+
+def test_the_schema_offers_the_minerals_that_can_be_rendered_and_no_others() -> None:
+    schema = demonstrations()[NAME].Parameters.model_json_schema()
+    classes = schema["properties"]["mineral"]["x-optical-classes"]
+    known = minerals_db.minerals().values()
+    offered = {mineral.id for mineral in known if mineral.optical_class in classes}
+    assert {"calcite", "diamond"} <= offered
+    refused = {mineral.id for mineral in known} - offered
+    assert "aragonite" in refused
+    for mineral in offered:
+        assert parse_request({"demonstration": NAME, "parameters": {"mineral": mineral}}).parameters
+    for mineral in refused:
+        faults = _faults({"demonstration": NAME, "parameters": {"mineral": mineral}})
+        assert faults == {
+            "/parameters/mineral": f"{mineral} is biaxial: only isotropic and uniaxial crystals can be rendered yet"
+        }
+    unknown = _faults({"demonstration": NAME, "parameters": {"mineral": "kryptonite"}})["/parameters/mineral"]
+    assert set(unknown.rpartition("known: ")[2].split(", ")) == offered
 
 
 def test_the_schema_tells_a_page_all_it_needs() -> None:

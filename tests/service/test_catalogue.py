@@ -32,6 +32,20 @@ def test_a_mineral_comes_whole_with_sources_and_indices(client: TestClient) -> N
     assert calcite["indices"]["e"] == pytest.approx(1.486, abs=5e-4)
 
 
+def test_a_biaxial_mineral_is_told_by_its_axes(client: TestClient) -> None:
+    topaz = client.get("/v1/minerals/topaz").json()
+    assert (topaz["optical_class"], topaz["optic_sign"]) == ("biaxial", "positive")
+    assert {axis: topaz["indices"][axis] for axis in "abc"} == {"a": 1.61161, "b": 1.61375, "c": 1.62109}
+    assert topaz["orientation"]["gamma"] == "c"
+    assert topaz["orientation"]["source"] in topaz["sources"]
+
+
+def test_an_active_mineral_tells_its_rotation(client: TestClient) -> None:
+    rotation = client.get("/v1/minerals/quartz").json()["optical_rotation"]
+    assert rotation["hand"]["sense"] == "right"
+    assert client.get("/v1/minerals/calcite").json()["optical_rotation"] is None
+
+
 def test_mineral_data_are_validated_by_their_digest(client: TestClient) -> None:
     etag = client.get("/v1/minerals").headers["etag"]
     assert minerals_db.data_digest() in etag

@@ -62,7 +62,13 @@ def test_schema_becomes_fields(module: Any) -> None:
     schema = {
         "$defs": {"Cut": {"enum": ["block", "cleavage"], "type": "string"}},
         "properties": {
-            "mineral": {"type": "string", "default": "calcite", "title": "Mineral", "x-choices": "minerals"},
+            "mineral": {
+                "type": "string",
+                "default": "calcite",
+                "title": "Mineral",
+                "x-choices": "minerals",
+                "x-optical-classes": ["uniaxial"],
+            },
             "cut": {"$ref": "#/$defs/Cut", "default": "block", "x-label": {"en": "Cut", "ru": "Форма"}},
             "size_mm": {
                 "type": "array",
@@ -89,6 +95,7 @@ def test_schema_becomes_fields(module: Any) -> None:
         "texture": "text",
         "frozen": "boolean",
     }
+    assert fields["mineral"]["classes"] == ["uniaxial"]
     assert fields["cut"]["choices"] == ["block", "cleavage"]
     assert fields["cut"]["label"]["ru"] == "Форма"
     assert fields["size_mm"]["limits"] == [{"least": 0, "most": None}, {"least": None, "most": 9}]

@@ -66,6 +66,14 @@ def test_it_renders(visitor: Visitor) -> None:
     )
 
 
+def test_only_minerals_that_can_be_rendered_are_offered(visitor: Visitor) -> None:
+    visitor.open()
+    choice = visitor.page.get_by_label("Mineral", exact=True)
+    expect(choice.locator("option", has_text="Quartz")).to_have_count(1)
+    expect(choice.locator("option", has_text="Topaz")).to_have_count(0)  # biaxial
+    assert "topaz" in {mineral["id"] for mineral in json.loads(fetch(visitor.address + "v1/minerals")[1])["minerals"]}
+
+
 def test_render_button_asks_for_what_the_form_says(visitor: Visitor) -> None:
     visitor.open()
     visitor.wait_done()
