@@ -39,3 +39,18 @@ def run(program: Program, folder: Path) -> tuple[dict[str, Any], str]:
     with contextlib.chdir(folder), contextlib.redirect_stdout(printed):
         exec(compile(program.source, "program", "exec"), variables)
     return variables, printed.getvalue()
+
+
+def section(page: str, heading: str) -> str:
+    """Return what a page, such as ``docs/errata.md``, says under a heading of any level, on one line.
+
+    Raises
+    ------
+    KeyError
+        There is no such heading.
+    """
+    text = (ROOT / page).read_text(encoding="utf-8")
+    found = re.search(rf"^(#+) {re.escape(heading)}\n(.*?)(?=^#{{1,2}} |\Z)", text, re.MULTILINE | re.DOTALL)
+    if found is None:
+        raise KeyError(heading)
+    return " ".join(found.group(2).split())

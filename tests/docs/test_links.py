@@ -55,12 +55,27 @@ def test_the_command_of_the_picture_stands_in_the_readme() -> None:
 NUMBER = re.compile(r"-?\d+\.\d+")
 
 
-def test_drawings_are_what_their_script_draws(tmp_path: Path) -> None:
-    subprocess.run([sys.executable, ROOT / "tools" / "draw_conventions.py", tmp_path], check=True, timeout=120)
-    for name in ("frames.svg", "waves.svg"):
+DRAWN = {
+    "draw_conventions.py": ("frames.svg", "waves.svg"),
+    "draw_backward_rays.py": ("backward-rays.svg",),
+}
+"""The scripts of tools/ and the drawings that they make."""
+
+
+@pytest.mark.parametrize(("script", "names"), DRAWN.items(), ids=list(DRAWN))
+def test_drawings_are_what_their_script_draws(script: str, names: tuple[str, ...], tmp_path: Path) -> None:
+    subprocess.run([sys.executable, ROOT / "tools" / script, tmp_path], check=True, timeout=120)
+    assert {path.name for path in tmp_path.iterdir()} == set(names)
+    for name in names:
         shown = (ROOT / "docs" / "pictures" / name).read_text(encoding="utf-8")
         drawn = (tmp_path / name).read_text(encoding="utf-8")
-        assert NUMBER.sub("#", shown) == NUMBER.sub("#", drawn), "draw it anew: python tools/draw_conventions.py"
+        assert NUMBER.sub("#", shown) == NUMBER.sub("#", drawn), f"draw it anew: python tools/{script}"
         # Coordinates are rounded to tenths of a pixel; on another machine one may fall the other way.
         there, here = (np.array(NUMBER.findall(text), np.float64) for text in (shown, drawn))
         np.testing.assert_allclose(here, there, atol=0.11)
+
+
+def test_every_drawing_has_its_script() -> None:
+    drawings = {path.name for path in (ROOT / "docs" / "pictures").glob("*.svg")}
+    assert drawings == {name for names in DRAWN.values() for name in names}
+    assert {path.name for path in (ROOT / "tools").glob("draw_*.py")} == set(DRAWN)
