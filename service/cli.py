@@ -12,6 +12,7 @@ import typer
 from crystal_core import __version__
 from crystal_core.errors import InputError, IsogyreError, NotSupportedError
 from service.commands.complaint import complain, input_complaints
+from service.commands.interface import interface
 from service.commands.render import render
 from service.commands.serve import serve
 
@@ -26,6 +27,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command()(render)
+app.command()(interface)
 app.command()(serve)
 
 
