@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crystal_core.optics.arrays import Field, Real
+from crystal_core.optics.arrays import Complex, Field, Real
 from crystal_core.optics.indicatrix import dissipation, permittivity
 from crystal_core.optics.medium import Medium
 
@@ -51,9 +51,7 @@ def berreman_matrix(epsilon: Field, kx: Real, ky: Real, kappa: Real | None = Non
         e[:, i, 0] * ex + e[:, i, 1] * ey + e[:, i, 2] * ez + c[:, i, 0] * hx + c[:, i, 1] * hy + c[:, i, 2] * hz
         for i in (0, 1)
     )
-    bx, by = (
-        (hx, hy)[i] - c[:, 0, i] * ex - c[:, 1, i] * ey - c[:, 2, i] * ez for i in (0, 1)
-    )
+    bx, by = ((hx, hy)[i] - c[:, 0, i] * ex - c[:, 1, i] * ey - c[:, 2, i] * ez for i in (0, 1))
     return np.stack((x * ez + by, y * ez - bx, x * hz - dy, y * hz + dx), axis=1)
 
 
@@ -95,15 +93,15 @@ def plate_matrix(medium: Medium, wavelength_nm: Real, kx: Real, ky: Real) -> Fie
     return berreman_matrix(epsilon, kx, ky, None if kappa is None else _stack(kappa, kx.size))
 
 
-def flux_product(a: Field, b: Field) -> Field:
+def flux_product(a: Field, b: Field) -> Complex:
     """Return a† K b over the second axis, shapes (N, 4, i) and (N, 4, j) → (N, i, j); a† K a = 2 Re(E × H*)_z.
 
     In a lossless medium K Δ is Hermitian, so two waves with different real q exchange no energy: a† K b = 0.
     """
     c = np.conj(a)[:, :, :, None]
     d = b[:, :, None, :]
-    product: Field = c[:, 0] * d[:, 3] + c[:, 3] * d[:, 0] - c[:, 1] * d[:, 2] - c[:, 2] * d[:, 1]
-    return product
+    product = c[:, 0] * d[:, 3] + c[:, 3] * d[:, 0] - c[:, 1] * d[:, 2] - c[:, 2] * d[:, 1]
+    return np.asarray(product, np.complex128)
 
 
 def _stack(tensor: Real, count: int) -> Real:
