@@ -25,7 +25,9 @@ _PLAIN = {
 
 def faults_of(error: ValidationError) -> list[Fault]:
     """Return a fault for each wrong place, in the order of the model's fields."""
-    return [_fault(detail) for detail in error.errors(include_url=False)]
+    faults = [_fault(detail) for detail in error.errors(include_url=False)]
+    # Of a list with a faulty item pydantic also says that it has one item less.
+    return [fault for fault in faults if not any(other.pointer.startswith(f"{fault.pointer}/") for other in faults)]
 
 
 def _fault(detail: Any) -> Fault:
