@@ -15,6 +15,7 @@ from service.commands.complaint import complain, input_complaints
 from service.commands.interface import interface
 from service.commands.render import render
 from service.commands.serve import serve
+from service.commands.wave_surface import wave_surface
 
 __all__ = ["main", "run"]
 
@@ -28,6 +29,7 @@ app = typer.Typer(
 )
 app.command()(render)
 app.command()(interface)
+app.command("wave-surface")(wave_surface)
 app.command()(serve)
 
 
