@@ -29,8 +29,11 @@ from crystal_core.optics.sheets import Sheets
 
 __all__ = ["FramedBiaxial"]
 
-STEPS = 2
+STEPS = 1
 """Newton steps from the quartic's roots, good to 1e-8 at worst, to rounding."""
+
+MORE_STEPS = 3
+"""The same where the equation bends within the first error: near an optic axis, and for complex roots."""
 
 NEAR_AXIS = 1e-3
 """Angle to an optic axis below which the quartic's roots are worth less than a fresh start from the axis."""
@@ -87,7 +90,7 @@ class FramedBiaxial(FramedMedium):
             q1, q3 = np.where(four, np.maximum(q1, q3), q1), np.where(four, np.minimum(q1, q3), q3)
             q2, q4 = np.where(four, np.maximum(q2, q4), q2), np.where(four, np.minimum(q2, q4), q4)
         higher, lower = np.maximum(q2, q3), np.minimum(q2, q3)
-        slow = sheets.smooth(higher)[0] + sheets.smooth(lower)[0] > 0.0
+        slow = sheets.gap(higher) + sheets.gap(lower) > 0.0
         if four is not None:
             slow &= four
             higher, lower = np.where(four, higher, q3), np.where(four, lower, q4)
@@ -139,14 +142,13 @@ class FramedBiaxial(FramedMedium):
         sheets = self._sheets
         slow, fast = self._forward if forward else self._backward
         k2 = sheets.kappa * sheets.kappa + slow * slow
-        to_first, to_second = sheets.square(0, slow)[0], sheets.square(1, slow)[0]
-        near = (np.minimum(to_first, to_second) < NEAR_AXIS**2 * k2) & self._free[1] & ~self._second_slow
-        which = to_second < to_first
+        square, second = sheets.nearest(slow)
+        near = (square < NEAR_AXIS**2 * k2) & self._free[1] & ~self._second_slow
         slow = sheets.refined(slow, SLOW, STEPS)
         fast = sheets.refined(fast, np.where(self._second_slow, SLOW, FAST), STEPS)
         rays = np.flatnonzero(near)
         if rays.size:
-            slow[rays], fast[rays] = self._from_axis(rays, which[rays], forward)
+            slow[rays], fast[rays] = self._from_axis(rays, second[rays], forward)
         return slow, fast
 
     def _from_axis(self, rays: Rays, second: BoolArray, forward: bool) -> tuple[Real, Real]:
@@ -155,7 +157,7 @@ class FramedBiaxial(FramedMedium):
         middle = 0.5 * (slow[rays] + fast[rays])
         by_first, by_second = sheets.near_axis(middle, 0), sheets.near_axis(middle, 1)
         slow, fast = (np.where(second, b, a) for a, b in zip(by_first, by_second, strict=True))
-        return sheets.refined(slow, SLOW, STEPS + 1), sheets.refined(fast, FAST, STEPS + 1)
+        return sheets.refined(slow, SLOW, MORE_STEPS), sheets.refined(fast, FAST, MORE_STEPS)
 
     def _complex(self, q: Real, branch: Real, mode: int, forward: bool) -> tuple[Field, Real]:
         """Return the roots as complex numbers, those of evanescent waves refined, and the branch of each."""
@@ -165,7 +167,7 @@ class FramedBiaxial(FramedMedium):
         if rays.size and decay is not None:
             centre = (self._forward if forward else self._backward)[mode][rays]
             start = centre + (1j if forward else -1j) * decay[rays]
-            refined, own = self._sheets.take(rays).refined_complex(start, STEPS)
+            refined, own = self._sheets.take(rays).refined_complex(start, MORE_STEPS)
             result[rays] = refined
             branch = branch.copy()
             branch[rays] = own
@@ -192,8 +194,7 @@ class FramedBiaxial(FramedMedium):
         ey = sheets.middle * dy - (y1 * along2 + y2 * along1)
         ez = sheets.middle * dz - (z1 * along2 + z2 * along1)
         hx, hy, hz = -q * ey, q * ex - kappa * ez, kappa * ey
-        ray = (ey * hz - ez * hy, ez * hx - ex * hz, ex * hy - ey * hx)
-        return Mode(q, ex, ey, ez, hx, hy, ray, slow)
+        return Mode(q, ex, ey, ez, hx, hy, None, slow, hz)
 
     def _direction(self, which: int, q: Field) -> tuple[Field, Field, Field]:
         """Return k × o/|k × o| (without conjugation) of an optic axis, and y where k lies along it."""
@@ -220,8 +221,7 @@ class FramedBiaxial(FramedMedium):
         first, second = modes
         q = first.q.real
         limit = ONE_FRAME**2 * (self.frame.kappa**2 + q * q)
-        nearest = np.minimum(self._sheets.square(0, q)[0], self._sheets.square(1, q)[0])
-        rays = np.flatnonzero((nearest < limit) & self._free[1])
+        rays = np.flatnonzero((self._sheets.nearest(q)[0] < limit) & self._free[1])
         if not rays.size:
             return
         a, b = _selected(first, rays), _selected(second, rays)
@@ -258,7 +258,7 @@ def _balance(modes: tuple[Mode, Mode, Mode, Mode]) -> None:
 
 
 def _components(mode: Mode) -> list[Field]:
-    return [v for v in (mode.ex, mode.ey, mode.ez, mode.hx, mode.hy) if v is not None]
+    return [v for v in (mode.ex, mode.ey, mode.ez, mode.hx, mode.hy, mode.hz) if v is not None]
 
 
 def _selected(mode: Mode, rays: Rays) -> Mode:
@@ -266,7 +266,15 @@ def _selected(mode: Mode, rays: Rays) -> Mode:
         return None if values is None else values[rays]
 
     return Mode(
-        mode.q[rays], part(mode.ex), part(mode.ey), part(mode.ez), part(mode.hx), part(mode.hy), mode.ray, mode.name
+        mode.q[rays],
+        part(mode.ex),
+        part(mode.ey),
+        part(mode.ez),
+        part(mode.hx),
+        part(mode.hy),
+        None,
+        mode.name,
+        part(mode.hz),
     )
 
 

@@ -34,16 +34,16 @@ class BiaxialIndicatrix:
         The indices n_α ≤ n_β ≤ n_γ, shape () or (N,).
     axes : Real
         Directions of α, β, γ, shape (3, 3) or (3, 3, N).
-    v_z : Real
-        Angle between γ and each optic axis, radians, in [0, π/2], shape () or (N,); 0 where n_α = n_β, π/2 where
-        n_β = n_γ. Where all three are equal every direction is an optic axis, and γ is given.
+    sin_v, cos_v : Real
+        Sine and cosine of `v_z`.
     """
 
     alpha: Real
     beta: Real
     gamma: Real
     axes: Real
-    v_z: Real
+    sin_v: Real
+    cos_v: Real
 
     @classmethod
     def of(cls, medium: Medium) -> BiaxialIndicatrix:
@@ -56,23 +56,34 @@ class BiaxialIndicatrix:
         """
         if medium.axes is None:
             raise InputError.at("", "only a medium with three principal indices has a biaxial indicatrix")
-        n = np.stack(np.broadcast_arrays(*medium.indices))
+        first, second, third = np.broadcast_arrays(*medium.indices)
         axes = medium.axes
-        order = np.argsort(n, axis=0, kind="stable")
-        if n.ndim == 1:
-            axes = axes[order]
-        elif (order == order[:, :1]).all():  # the same names for all rays: the usual case
-            axes = axes[order[:, 0]]
-        else:
-            wide = np.broadcast_to(axes[:, :, None] if axes.ndim == 2 else axes, (3, 3, n.shape[1]))
-            axes = np.take_along_axis(wide, order[:, None, :], axis=0)
-        alpha, beta, gamma = np.take_along_axis(n, order, axis=0)
-        return cls(alpha, beta, gamma, axes, _v_z(alpha, beta, gamma))
+        if not ((first <= second) & (second <= third)).all():
+            n = np.stack((first, second, third))
+            order = np.argsort(n, axis=0, kind="stable")
+            if n.ndim == 1:
+                axes = axes[order]
+            elif (order == order[:, :1]).all():  # the same names for all rays: the usual case
+                axes = axes[order[:, 0]]
+            else:
+                wide = np.broadcast_to(axes[:, :, None] if axes.ndim == 2 else axes, (3, 3, n.shape[1]))
+                axes = np.take_along_axis(wide, order[:, None, :], axis=0)
+            first, second, third = np.take_along_axis(n, order, axis=0)
+        return cls(first, second, third, axes, *_sin_and_cos_v(first, second, third))
+
+    @property
+    def v_z(self) -> Real:
+        """Angle between γ and each optic axis, radians, in [0, π/2], shape () or (N,).
+
+        0 where n_α = n_β, π/2 where n_β = n_γ. Where all three are equal every direction is an optic axis, and γ is
+        given.
+        """
+        return np.asarray(np.arctan2(self.sin_v, self.cos_v))
 
     def optic_axes(self) -> tuple[Real, Real]:
         """Return two unit vectors, (3,) or (3, N), at ±V_z from γ towards α: the same half-space, whatever the sign."""
-        sin, cos = np.sin(self.v_z), np.cos(self.v_z)
-        return cos * self._column(2) + sin * self._column(0), cos * self._column(2) - sin * self._column(0)
+        along, across = self.cos_v * self._column(2), self.sin_v * self._column(0)
+        return along + across, along - across
 
     def two_v(self) -> Real:
         """Return the acute angle 2V between the optic axes, radians."""
@@ -84,14 +95,20 @@ class BiaxialIndicatrix:
 
     def _column(self, which: int) -> Real:
         direction = self.axes[which]
-        return np.asarray(direction[:, None] if direction.ndim == 1 and self.v_z.ndim == 1 else direction)
+        return np.asarray(direction[:, None] if direction.ndim == 1 and self.sin_v.ndim == 1 else direction)
 
 
-def _v_z(alpha: Real, beta: Real, gamma: Real) -> Real:
-    """Return V_z of tan² V_z = (n_α⁻² − n_β⁻²)/(n_β⁻² − n_γ⁻²) (Born & Wolf, §15.3.3, eq. 11), without cancellation."""
-    lower = (beta - alpha) * (beta + alpha) / (alpha * alpha)
-    upper = (gamma - beta) * (gamma + beta) / (gamma * gamma)
-    return np.asarray(np.arctan2(np.sqrt(lower), np.sqrt(upper)))
+def _sin_and_cos_v(alpha: Real, beta: Real, gamma: Real) -> tuple[Real, Real]:
+    """Return those of V_z, tan² V_z = (n_α⁻² − n_β⁻²)/(n_β⁻² − n_γ⁻²) (Born & Wolf, §15.3.3, eq. 11).
+
+    Differences of the indices themselves: those of their squares would lose the digits of a small birefringence.
+    """
+    lower = (beta - alpha) * (beta + alpha) * (gamma * gamma)
+    upper = (gamma - beta) * (gamma + beta) * (alpha * alpha)
+    both = lower + upper
+    equal = both == 0.0
+    inverse = 1.0 / np.where(equal, 1.0, both)
+    return np.sqrt(lower * inverse), np.sqrt(np.where(equal, 1.0, upper * inverse))
 
 
 def optical_class(medium: Medium) -> OpticalClass:

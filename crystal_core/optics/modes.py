@@ -24,10 +24,12 @@ class Mode:
         Electric field, not normalised.
     hx, hy : Field or None
         Tangential magnetic field, H = k × E.
-    ray : tuple of Field
-        A vector along the energy flow, not normalised; meaningless where the wave is evanescent.
+    direction : tuple of Field or None
+        A vector along the energy flow where a closed form gives it, not normalised; None: E × H, by `ray`.
     name : str or BoolArray
         "s", "p", "ordinary" or "extraordinary"; of a biaxial medium True where it is slow and False where it is fast.
+    hz : Field or None
+        Normal magnetic field; needed only where `direction` is None.
     """
 
     q: Field
@@ -36,8 +38,20 @@ class Mode:
     ez: Field | None
     hx: Field | None
     hy: Field | None
-    ray: tuple[Field, Field | None, Field]
+    direction: tuple[Field, Field | None, Field] | None
     name: str | BoolArray
+    hz: Field | None = None
+
+    @property
+    def ray(self) -> tuple[Field, Field | None, Field]:
+        """A vector along the energy flow, not normalised; meaningless where the wave is evanescent."""
+        if self.direction is not None:
+            return self.direction
+        ex, ey, ez, hx, hy, hz = (self._whole(v) for v in (self.ex, self.ey, self.ez, self.hx, self.hy, self.hz))
+        return ey * hz - ez * hy, ez * hx - ex * hz, ex * hy - ey * hx
+
+    def _whole(self, component: Field | None) -> Field:
+        return np.zeros(self.q.shape) if component is None else component
 
     def half(self, which: int) -> Mode:
         """Return one row of a mode whose arrays have shape (2, N)."""
@@ -45,6 +59,7 @@ class Mode:
         def row(values: Field | None) -> Field | None:
             return None if values is None else _row(values, which)
 
+        flow = self.direction
         return Mode(
             self.q[which],
             row(self.ex),
@@ -52,8 +67,9 @@ class Mode:
             row(self.ez),
             row(self.hx),
             row(self.hy),
-            (_row(self.ray[0], which), row(self.ray[1]), _row(self.ray[2], which)),
+            None if flow is None else (_row(flow[0], which), row(flow[1]), _row(flow[2], which)),
             self.name if isinstance(self.name, str) else self.name[which],
+            row(self.hz),
         )
 
     def names(self) -> NDArray[np.str_]:

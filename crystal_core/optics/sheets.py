@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crystal_core.optics.arrays import Complex, Field, Rays, Real
+from crystal_core.optics.arrays import BoolArray, Complex, Field, Rays, Real
 from crystal_core.optics.frames import InterfaceFrame
 from crystal_core.optics.indicatrix import BiaxialIndicatrix
 from crystal_core.optics.medium import take
@@ -78,6 +78,17 @@ class Sheets:
         return Sheets(
             self.kappa[rays], take(self.mean, rays), take(self.half, rays), take(self.middle, rays), (one, two)
         )
+
+    def gap(self, q: Real) -> Real:
+        """Return P alone: positive on the outer sheet, negative on the inner one."""
+        (x1, _, z1), (x2, _, z2) = self.axes
+        across = self.half * (self.kappa * x1 + q * z1) * (self.kappa * x2 + q * z2)
+        return np.asarray(self.mean * (self.kappa * self.kappa + q * q) + across - 1.0)
+
+    def nearest(self, q: Real) -> tuple[Real, BoolArray]:
+        """Return the least |k × o|² of both optic axes, and whether it is that of the second."""
+        first, second = self.square(0, q)[0], self.square(1, q)[0]
+        return np.minimum(first, second), second < first
 
     def smooth(self, q: Field) -> tuple[Field, Field]:
         """Return P and dP/dq."""
