@@ -14,6 +14,7 @@ from crystal_core.errors import InputError, NotSupportedError
 from crystal_core.optics.arrays import Real
 from crystal_core.optics.directions import PlaneWave, waves_along
 from crystal_core.optics.indicatrix import BiaxialIndicatrix, permittivity
+from crystal_core.optics.interface import scatter
 from crystal_core.optics.medium import Medium
 
 ARAGONITE = (1.5300, 1.6810, 1.6854)
@@ -305,3 +306,24 @@ def test_a_medium_of_another_number_of_rays_is_refused(medium: Medium) -> None:
 def test_an_active_medium_is_refused_by_name() -> None:
     with pytest.raises(NotSupportedError, match="gyration"):
         waves_along(Medium.uniaxial(1.5443, 1.5534, (0, 0, 1)).active(np.diag((1e-5, 1e-5, 7e-5))), np.eye(3))
+
+
+@pytest.mark.parametrize("name", ["isotropic", "calcite", "aragonite", "in another order", "huge"])
+def test_the_waves_behind_a_face_are_waves_of_their_directions(name: str) -> None:
+    """`scatter` solves for k at a given tangential part; the same waves come out when their direction is given."""
+    medium = media()[name]
+    rng = np.random.default_rng(14)
+    normal = np.array((0.0, 0.6, 0.8))
+    across = np.cross(normal, directions(15, 400), axisa=0, axisb=0, axisc=0)
+    tangential = rng.uniform(0.0, 0.999, 400) * across / np.linalg.norm(across, axis=0)
+    for wave in scatter(normal, tangential, Medium.isotropic(1.0), medium).transmitted:
+        assert np.all(wave.propagating)
+        candidates = waves_along(medium, wave.k / wave.index)
+        index = np.stack([other.index for other in candidates])
+        nearest = np.argmin(np.abs(index - wave.index), axis=0)
+        chosen = np.arange(400)
+        np.testing.assert_allclose(index[nearest, chosen], wave.index, rtol=1e-12)
+        if name != "isotropic":  # where any pair serves
+            for part, same in (("ray", wave.ray), ("e", wave.field.real)):
+                got = np.stack([getattr(other, part) for other in candidates])[nearest, :, chosen].T
+                np.testing.assert_allclose(np.linalg.norm(np.cross(got, same, axis=0), axis=0), 0.0, atol=1e-10)
