@@ -113,6 +113,16 @@ class Scattered:
         pairs = (self.incident, self.backward, self.forward)
         return min(float(max(abs(x) for x in p.k - q.k)) for p, q in pairs)
 
+    def reordered(self, incident: Sequence[int], backward: Sequence[int], forward: Sequence[int]) -> Scattered:
+        """Return the same with the modes of each pair in another order, (0, 1) or (1, 0)."""
+        return Scattered(
+            (self.incident[incident[0]], self.incident[incident[1]]),
+            (self.backward[backward[0]], self.backward[backward[1]]),
+            (self.forward[forward[0]], self.forward[forward[1]]),
+            self.reflected[np.ix_(backward, incident)],
+            self.transmitted[np.ix_(forward, incident)],
+        )
+
     def _power(self, amplitudes: Array, outgoing: tuple[Mode, Mode]) -> NDArray[np.float64]:
         powers = np.zeros((2, 2))
         for i, out in enumerate(outgoing):
@@ -141,10 +151,21 @@ def tensor_uniaxial(n_o: complex, n_e: complex, axis: Array, digits: int | None 
         return np.asarray(o * o * unit + (e * e - o * o) * np.outer(c, c) / dot(c, c))
 
 
-def tensor_biaxial(indices: Sequence[complex] | Array, rotation: Array) -> Array:
-    """Return eps (3, 3) = R diag(n^2) R^T, double precision, of principal indices (3,) and a rotation (3, 3)."""
-    eps = rotation @ np.diag(np.asarray(indices) ** 2) @ rotation.T
-    return np.asarray((eps + eps.T) / 2)
+def tensor_biaxial(indices: Sequence[complex] | Array, rotation: Array, digits: int | None = None) -> Array:
+    """Return eps (3, 3) = R diag(n^2) R^T of principal indices (3,) along the columns of R (3, 3).
+
+    With digits the columns, orthonormal to rounding only, are made so to all digits first.
+    """
+    if digits is None:
+        eps = rotation @ np.diag(np.asarray(indices) ** 2) @ rotation.T
+        return np.asarray((eps + eps.T) / 2)
+    a = arithmetic(digits)
+    with mpmath.workdps(digits):
+        n, r = a.array(indices), a.array(rotation)
+        z = r[:, 2] / a.sqrt(dot(r[:, 2], r[:, 2]))
+        x = r[:, 0] - dot(r[:, 0], z) * z
+        x = x / a.sqrt(dot(x, x))
+        return np.asarray(sum(m * m * np.outer(u, u) for m, u in zip(n, (x, cross(z, x), z), strict=True)))
 
 
 def _delta(eps: Array, kx: Any, ky: Any) -> Array:
