@@ -12,7 +12,7 @@ from crystal_core.optics.arrays import BoolArray, Complex, Real
 from crystal_core.optics.beams import TOGETHER, plate_beams
 from crystal_core.optics.plates import Plate
 
-__all__ = ["degree_of_coherence", "path_difference_nm", "retardation_nm"]
+__all__ = ["degree_of_coherence", "path_lengths_nm", "retardation_nm"]
 
 SAME_DIRECTION = 1e-6
 """Angle, radians, up to which two plates' vibration directions count as the same."""
@@ -54,7 +54,8 @@ def retardation_nm(
     fast_direction: Complex | None = None
     known = np.zeros(wavelength.size, np.bool_)
     for plate in plates:
-        path, slow, fast = _modes(plate, wavelength, kx, ky)
+        slow_path, fast_path, slow, fast = _modes(plate, wavelength, kx, ky)
+        path = slow_path - fast_path
         retards = path > TOGETHER * plate.thickness_um * 1e3
         if slow_direction is None or fast_direction is None:
             slow_direction, fast_direction = slow.copy(), fast.copy()
@@ -70,13 +71,19 @@ def retardation_nm(
     return np.abs(total)
 
 
-def path_difference_nm(plates: Sequence[Plate], wavelength_nm: ArrayLike) -> Real:
-    """Return Σ (q_slow − q_fast) d at normal incidence, nm, shape (N,): an upper bound of any stack's retardation."""
+def path_lengths_nm(plates: Sequence[Plate], wavelength_nm: ArrayLike) -> tuple[Real, Real]:
+    """Return what the fringes of a stack depend on at normal incidence, nm, shape (N,) each.
+
+    Σ (q_slow − q_fast) d, the most that its retardation can be however its axes lie, and 2 Σ q_slow d, the longest
+    optical path there and back.
+    """
     wavelength, kx, ky = _checked(wavelength_nm, None)
-    total = np.zeros(wavelength.size)
+    difference, there_and_back = np.zeros(wavelength.size), np.zeros(wavelength.size)
     for plate in plates:
-        total = total + _modes(plate, wavelength, kx, ky)[0]
-    return total
+        slow, fast = _modes(plate, wavelength, kx, ky)[:2]
+        difference = difference + (slow - fast)
+        there_and_back = there_and_back + 2.0 * slow
+    return difference, there_and_back
 
 
 def degree_of_coherence(retardation_nm: ArrayLike, band_nm: ArrayLike, wavelength_nm: ArrayLike) -> Real:
@@ -108,14 +115,14 @@ def degree_of_coherence(retardation_nm: ArrayLike, band_nm: ArrayLike, wavelengt
     return np.asarray(np.sinc(np.asarray(retardation_nm, np.float64) * band / (wavelength * wavelength)))
 
 
-def _modes(plate: Plate, wavelength: Real, kx: Real, ky: Real) -> tuple[Real, Complex, Complex]:
-    """Return (q_slow − q_fast) d, nm, (N,), and the tangential fields E of the slow and the fast wave, (N, 2)."""
-    phase = np.zeros(wavelength.size)
-    beams = plate_beams(plate.medium.transparent(), wavelength, kx, ky, phase).forward
-    q = np.where(beams.carries, beams.q.real, np.nan)
-    slow = np.where(q[:, 0] >= q[:, 1], 0, 1)
-    fields = [np.take_along_axis(beams.psi[:, :2], which[:, None, None], axis=2)[:, :, 0] for which in (slow, 1 - slow)]
-    return np.abs(q[:, 0] - q[:, 1]) * plate.thickness_um * 1e3, fields[0], fields[1]
+def _modes(plate: Plate, wavelength: Real, kx: Real, ky: Real) -> tuple[Real, Real, Complex, Complex]:
+    """Return q d, nm, (N,), of the slow and of the fast wave, then their tangential fields E, (N, 2)."""
+    beams = plate_beams(plate.medium.transparent(), wavelength, kx, ky, np.zeros(wavelength.size)).forward
+    path = np.where(beams.carries, beams.q.real, np.nan) * plate.thickness_um * 1e3
+    slow = np.where(path[:, 0] >= path[:, 1], 0, 1)[:, None]
+    paths = [np.take_along_axis(path, which, axis=1)[:, 0] for which in (slow, 1 - slow)]
+    fields = [np.take_along_axis(beams.psi[:, :2], which[:, None], axis=2)[:, :, 0] for which in (slow, 1 - slow)]
+    return paths[0], paths[1], fields[0], fields[1]
 
 
 def _same(a: Complex, b: Complex) -> BoolArray:
