@@ -116,7 +116,7 @@ def internal_cone(medium: Medium, which: Literal[0, 1] = 0) -> Cone:
     upper = (gamma - beta) * (gamma + beta) / (beta * gamma) ** 2
     radius = 0.5 * beta**2 * float(np.sqrt(lower * upper))
     # From the optic axis towards γ: along sin V γ − cos V α, or its mirror image for the other axis.
-    sin, cos = np.sin(indicatrix.v_z), np.cos(indicatrix.v_z) * (1 if which == 0 else -1)
+    sin, cos = indicatrix.sin_v, indicatrix.cos_v * (1 if which == 0 else -1)
     towards = sin * indicatrix.axes[2] - cos * indicatrix.axes[0]
     return Cone(indicatrix.optic_axes()[which], towards, radius)
 

@@ -148,7 +148,7 @@ def _grid(medium: Medium, steps: int) -> _Grid:
     indicatrix = BiaxialIndicatrix.of(Medium.biaxial(list(indices), axes))
     sin_v, cos_v = float(indicatrix.sin_v), float(indicatrix.cos_v)
     x, _, z = indicatrix.axes
-    if kind == "uniaxial" and sin_v == 1.0:  # n_β = n_γ: the optic axis is α
+    if kind == "uniaxial" and cos_v == 0.0:  # n_β = n_γ: the optic axis is α
         x, z, sin_v, cos_v = z, x, 0.0, 1.0
     y = np.cross(z, x)  # not β: the principal directions may be left-handed
 
