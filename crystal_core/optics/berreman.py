@@ -8,7 +8,7 @@ from crystal_core.optics.arrays import Complex, Field, Real
 from crystal_core.optics.indicatrix import dissipation, permittivity
 from crystal_core.optics.medium import Medium
 
-__all__ = ["activity", "berreman_matrix", "flux_product", "plate_matrix"]
+__all__ = ["activity", "berreman_matrix", "flux_product", "normal_fields", "plate_matrix"]
 
 
 def berreman_matrix(epsilon: Field, kx: Real, ky: Real, kappa: Real | None = None) -> Field:
@@ -43,16 +43,43 @@ def berreman_matrix(epsilon: Field, kx: Real, ky: Real, kappa: Real | None = Non
         dy: Field = e[:, 1, 0] * ex + e[:, 1, 1] * ey + e[:, 1, 2] * ez
         return np.stack((x * ez + hy, y * ez - hx, x * hz - dy, y * hz + dx), axis=1)
     c = 1j * kappa[:, :, :, None]
-    curl = x * ey - y * ex + c[:, 0, 2] * ex + c[:, 1, 2] * ey
-    known = x * hy - y * hx + e[:, 2, 0] * ex + e[:, 2, 1] * ey + c[:, 2, 0] * hx + c[:, 2, 1] * hy
-    ez = -(known + c[:, 2, 2] * curl) / (e[:, 2, 2] + c[:, 2, 2] ** 2)
-    hz = curl + c[:, 2, 2] * ez
+    ez, hz = _normal_fields(e, c, x, y, (ex, ey, hx, hy))
     dx, dy = (
         e[:, i, 0] * ex + e[:, i, 1] * ey + e[:, i, 2] * ez + c[:, i, 0] * hx + c[:, i, 1] * hy + c[:, i, 2] * hz
         for i in (0, 1)
     )
     bx, by = ((hx, hy)[i] - c[:, 0, i] * ex - c[:, 1, i] * ey - c[:, 2, i] * ez for i in (0, 1))
     return np.stack((x * ez + by, y * ez - bx, x * hz - dy, y * hz + dx), axis=1)
+
+
+def normal_fields(epsilon: Field, kx: Real, ky: Real, kappa: Real, psi: Field) -> tuple[Field, Field]:
+    """Return E_z and H_z of waves of given tangential fields, by the z components of Maxwell's equations.
+
+    Parameters
+    ----------
+    epsilon, kx, ky, kappa
+        As for `berreman_matrix`.
+    psi : Field
+        (E_x, E_y, H_x, H_y) of m waves as columns, shape (N, 4, m).
+
+    Returns
+    -------
+    pair of Field
+        Shape (N, m) each.
+    """
+    tangential = (psi[:, 0], psi[:, 1], psi[:, 2], psi[:, 3])
+    return _normal_fields(epsilon[:, :, :, None], 1j * kappa[:, :, :, None], kx[:, None], ky[:, None], tangential)
+
+
+def _normal_fields(
+    e: Field, c: Field, x: Real, y: Real, tangential: tuple[Field, Field, Field, Field]
+) -> tuple[Field, Field]:
+    """Return E_z and H_z for ε and c = i κ of shape (N, 3, 3, 1)."""
+    ex, ey, hx, hy = tangential
+    curl = x * ey - y * ex + c[:, 0, 2] * ex + c[:, 1, 2] * ey
+    known = x * hy - y * hx + e[:, 2, 0] * ex + e[:, 2, 1] * ey + c[:, 2, 0] * hx + c[:, 2, 1] * hy
+    ez = -(known + c[:, 2, 2] * curl) / (e[:, 2, 2] + c[:, 2, 2] ** 2)
+    return ez, curl + c[:, 2, 2] * ez
 
 
 def activity(medium: Medium) -> Real | None:

@@ -20,6 +20,9 @@ __all__ = ["Pair", "Split", "carried", "phase_matrix", "split"]
 REAL = 1e-9
 """|Im q| up to which a wave of a lossless medium propagates: what is less is rounding."""
 
+NO_FLUX = 1e-13
+"""Flux of a wave of unit ψ up to which it counts as grazing, and carries nothing."""
+
 SERIES = 1e-4
 """|x| below which (sin x)/x is summed as a series."""
 
@@ -161,14 +164,14 @@ def carried(pair: Pair, delta: Field, sign: int) -> tuple[Complex, Complex, Bool
     """
     q, psi, carries = pair.q.copy(), pair.psi.copy(), pair.propagating()
     flux = sign * np.einsum("nii->ni", flux_product(psi, psi)).real
-    carries &= flux > 0
+    carries &= flux > NO_FLUX
     psi /= np.sqrt(np.where(carries, flux, 1.0))[:, None, :]
     both = np.flatnonzero(carries.all(axis=1))
     if both.size:
         # Two waves that propagate: an orthonormal basis by flux, in which Q is Hermitian, and its eigenvectors.
         basis = pair.basis[both]
         size, turn = np.linalg.eigh(sign * flux_product(basis, basis))
-        fit = size[:, 0] > 0
+        fit = size[:, 0] > NO_FLUX
         basis = product(basis, turn) / np.sqrt(np.where(fit[:, None], size, 1.0))[:, None, :]
         levels, mix = np.linalg.eigh(sign * flux_product(basis, product(delta[both], basis)))
         chosen = both[fit]

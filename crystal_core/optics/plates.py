@@ -14,7 +14,7 @@ Three ways to add the beams that the faces send to and fro (`plate_stack`):
     Jones matrices are those of the direct path, J_t = t_n P_n … t_1 P_1 t_0, J_r = r_0 of the first face. The Mueller
     matrices are the sums over *all* sequences of transmissions and reflections, each sequence a Mueller matrix
     M(… t P r P t …) of its own: intensities, not fields, of different sequences add. The sum is taken in closed form.
-    Faces see ε′ alone; a plate's way has the exact complex modes.
+    Faces see ε′ alone; a plate's way couples its two waves by ε″ (`optics.beams`).
 
 **incoherent**
     As single-pass, but the phases of the two waves of a plate are averaged as well: on each passage of a plate the
