@@ -13,6 +13,7 @@ from crystal_core import __version__
 from crystal_core.errors import InputError, IsogyreError, NotSupportedError
 from service.commands.complaint import complain, input_complaints
 from service.commands.interface import interface
+from service.commands.plate import plate
 from service.commands.render import render
 from service.commands.serve import serve
 from service.commands.wave_surface import wave_surface
@@ -29,6 +30,7 @@ app = typer.Typer(
 )
 app.command()(render)
 app.command()(interface)
+app.command()(plate)
 app.command("wave-surface")(wave_surface)
 app.command()(serve)
 

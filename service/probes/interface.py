@@ -140,7 +140,7 @@ class InterfaceAnswer(BaseModel):
     scattered: list[ScatteredWave] = Field(min_length=4, max_length=4)
 
 
-INTERFACE = Probe("interface", InterfaceRequest, InterfaceAnswer, scatter_requests)
+INTERFACE = Probe("interface", InterfaceRequest, InterfaceAnswer, scatter_requests, most_lines=10_000)
 
 
 def _unit_vector(value: Vector) -> Vector:

@@ -51,12 +51,15 @@ class Probe(Generic[Request]):
         What is answered.
     compute : callable
         From requests to an answer each, or the error of a request that has none. No answer depends on the others.
+    most_lines : int
+        Most questions of one HTTP request.
     """
 
     name: str
     request: type[Request]
     answer: type[BaseModel]
     compute: Callable[[Sequence[Request]], list[Answer | IsogyreError]]
+    most_lines: int
 
     def ask(self, value: object) -> Answer:
         """Answer one document.

@@ -72,6 +72,8 @@ def test_openapi_describes_the_interface(client: TestClient) -> None:
         "/v1/renders/{render_id}/frames/{index}.{kind}",
         "/v1/renders/{render_id}/sequence.webp",
         "/v1/renders/{render_id}/manifest.json",
+        "/v1/optics/interface",
+        "/v1/optics/plate",
         "/healthz",
         "/readyz",
     }
