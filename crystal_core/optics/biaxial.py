@@ -19,7 +19,7 @@ import itertools
 
 import numpy as np
 
-from crystal_core.optics.arrays import BoolArray, Field, Rays, Real
+from crystal_core.optics.arrays import BoolArray, Complex, Field, Rays, Real
 from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.frames import InterfaceFrame
 from crystal_core.optics.indicatrix import BiaxialIndicatrix
@@ -34,6 +34,9 @@ STEPS = 1
 
 MORE_STEPS = 3
 """The same where the equation bends within the first error: near an optic axis, and for complex roots."""
+
+CLOSE = 3e-4
+"""Relative distance of two roots below which the quartic may take them for real or complex by rounding alone."""
 
 NEAR_AXIS = 1e-3
 """Angle to an optic axis below which the quartic's roots are worth less than a fresh start from the axis."""
@@ -58,46 +61,52 @@ class FramedBiaxial(FramedMedium):
 
     def __init__(self, medium: Medium, frame: InterfaceFrame) -> None:
         super().__init__(medium, frame)
-        self._sheets = Sheets.of(BiaxialIndicatrix.of(medium), frame)
-        factors = self._sheets.quadratics()
-        up, down = factors.upper_square >= 0.0, factors.lower_square >= 0.0
+        sheets = self._sheets = Sheets.of(BiaxialIndicatrix.of(medium), frame)
+        factors = sheets.quadratics()
+        up, upper = _real_roots(sheets, factors.upper, factors.upper_square)
+        down, lower = _real_roots(sheets, factors.lower, factors.lower_square)
         one, both = up | down, up & down
-        up_root, down_root = np.sqrt(np.abs(factors.upper_square)), np.sqrt(np.abs(factors.lower_square))
-        if both.all():
-            self._from_real_roots(
-                factors.upper + up_root, factors.upper - up_root, factors.lower + down_root, factors.lower - down_root
-            )
-            self._free = one, both
-            return
-        # Of mixed factors mode 0 takes the real one; a complex factor stands for centre ± i·root.
-        first_up = up | ~down
-        centre, root = np.where(first_up, factors.upper, factors.lower), np.where(first_up, up_root, down_root)
-        other, other_root = np.where(first_up, factors.lower, factors.upper), np.where(first_up, down_root, up_root)
-        self._from_real_roots(centre + root, centre - root, other + other_root, other - other_root, both)
         self._free = one, both
-        for mode, (middle, width, free) in enumerate(((centre, root, one), (other, other_root, both))):
+        if both.all():
+            self._sort(*upper, *lower)
+            return
+        # Of mixed factors mode 0 takes the real one; a complex factor stands for centre ± i·width.
+        swap = down & ~up
+        (q1, q2), (q3, q4) = (
+            [np.where(swap, b, a) for a, b in zip(first, second, strict=True)]
+            for first, second in ((upper, lower), (lower, upper))
+        )
+        self._sort(q1, q2, q3, q4, both)
+        centres = np.where(swap, factors.lower, factors.upper), np.where(swap, factors.upper, factors.lower)
+        squares = factors.upper_square, factors.lower_square
+        squares = np.where(swap, squares[1], squares[0]), np.where(swap, squares[0], squares[1])
+        for mode, free in enumerate(self._free):
             rays = np.flatnonzero(~free)
-            self._forward[mode][rays], self._backward[mode][rays] = middle[rays], middle[rays]
-            self._decay[mode] = np.where(free, 0.0, width)
+            self._forward[mode][rays] = self._backward[mode][rays] = centres[mode][rays]
+            self._decay[mode] = np.where(free, 0.0, np.sqrt(np.maximum(-squares[mode], 0.0)))
 
-    def _from_real_roots(self, q1: Real, q2: Real, q3: Real, q4: Real, four: BoolArray | None = None) -> None:
-        """Sort the roots of two real factors into modes; `four` tells where all are real (None: everywhere)."""
+    def _sort(self, q1: Real, q2: Real, q3: Real, q4: Real, four: BoolArray | None = None) -> None:
+        """Sort the roots of two real factors, q1 ≥ q2 and q3 ≥ q4, into modes.
+
+        `four` tells where all are real (None: everywhere); elsewhere only q1 and q2 mean something.
+        """
         sheets = self._sheets
-        # Rounding may swap neighbours that all but coincide.
-        q1, q2 = np.maximum(q1, q2), np.minimum(q1, q2)
-        q3, q4 = np.maximum(q3, q4), np.minimum(q3, q4)
-        if four is not None:
-            q1, q3 = np.where(four, np.maximum(q1, q3), q1), np.where(four, np.minimum(q1, q3), q3)
-            q2, q4 = np.where(four, np.maximum(q2, q4), q2), np.where(four, np.minimum(q2, q4), q4)
-        higher, lower = np.maximum(q2, q3), np.minimum(q2, q3)
+        highest, lowest = np.maximum(q1, q3), np.minimum(q2, q4)
+        higher, lower = (
+            np.maximum(np.maximum(q2, q4), np.minimum(q1, q3)),
+            np.minimum(np.maximum(q2, q4), np.minimum(q1, q3)),
+        )
         slow = sheets.gap(higher) + sheets.gap(lower) > 0.0
         if four is not None:
             slow &= four
-            higher, lower = np.where(four, higher, q3), np.where(four, lower, q4)
-            q4 = np.where(four, q4, q2)
+            highest, lowest = np.where(four, highest, q1), np.where(four, lowest, q2)
+        rays = np.flatnonzero(slow)
+        if rays.size:  # only where the outer sheet turns back can it be met four times: elsewhere it was rounding
+            some = sheets.take(rays)
+            slow[rays] = ~(some.split(higher[rays])[2] | some.split(lower[rays])[2])
         self._second_slow: BoolArray = slow
-        self._forward: list[Real] = [q1, np.where(slow, lower, higher)]
-        self._backward: list[Real] = [q4, np.where(slow, higher, lower)]
+        self._forward: list[Real] = [highest, np.where(slow, lower, higher)]
+        self._backward: list[Real] = [lowest, np.where(slow, higher, lower)]
         self._decay: list[Real | None] = [None, None]
 
     def take(self, rays: Rays) -> FramedBiaxial:
@@ -125,8 +134,7 @@ class FramedBiaxial(FramedMedium):
             first_slow = np.ones(slow.shape, np.bool_)
             modes = self._mode(slow, SLOW, first_slow), self._mode(fast, second, self._second_slow)
         else:
-            q0, branch0 = self._complex(slow, np.full(slow.shape, SLOW), 0, forward)
-            q1, branch1 = self._complex(fast, second, 1, forward)
+            (q0, branch0), (q1, branch1) = self._complex(slow, fast, second, forward)
             modes = self._mode(q0, branch0, branch0 == SLOW), self._mode(q1, branch1, branch1 == SLOW)
         self._make_orthogonal(modes)
         return modes
@@ -142,36 +150,59 @@ class FramedBiaxial(FramedMedium):
         sheets = self._sheets
         slow, fast = self._forward if forward else self._backward
         k2 = sheets.kappa * sheets.kappa + slow * slow
-        square, second = sheets.nearest(slow)
-        near = (square < NEAR_AXIS**2 * k2) & self._free[1] & ~self._second_slow
+        near = (sheets.nearest(slow) < NEAR_AXIS**2 * k2) & self._free[1] & ~self._second_slow
         slow = sheets.refined(slow, SLOW, STEPS)
         fast = sheets.refined(fast, np.where(self._second_slow, SLOW, FAST), STEPS)
         rays = np.flatnonzero(near)
         if rays.size:
-            slow[rays], fast[rays] = self._from_axis(rays, second[rays], forward)
+            slow[rays], fast[rays] = self._from_axis(rays, forward)
+        rays = np.flatnonzero(self._second_slow)
+        if rays.size:
+            fast[rays] = self._in_dimple(rays, fast[rays], forward)
         return slow, fast
 
-    def _from_axis(self, rays: Rays, second: BoolArray, forward: bool) -> tuple[Real, Real]:
+    def _from_axis(self, rays: Rays, forward: bool) -> tuple[Real, Real]:
+        """Return the slow and the fast root of rays near an optic axis, from between the quartic's."""
         sheets = self._sheets.take(rays)
         slow, fast = self._forward if forward else self._backward
-        middle = 0.5 * (slow[rays] + fast[rays])
-        by_first, by_second = sheets.near_axis(middle, 0), sheets.near_axis(middle, 1)
-        slow, fast = (np.where(second, b, a) for a, b in zip(by_first, by_second, strict=True))
+        slow, fast = sheets.near_axis(0.5 * (slow[rays] + fast[rays]))
         return sheets.refined(slow, SLOW, MORE_STEPS), sheets.refined(fast, FAST, MORE_STEPS)
 
-    def _complex(self, q: Real, branch: Real, mode: int, forward: bool) -> tuple[Field, Real]:
-        """Return the roots as complex numbers, those of evanescent waves refined, and the branch of each."""
-        result = q.astype(np.result_type(q, np.complex64))
-        rays = np.flatnonzero(~self._free[mode])
-        decay = self._decay[mode]
-        if rays.size and decay is not None:
-            centre = (self._forward if forward else self._backward)[mode][rays]
-            start = centre + (1j if forward else -1j) * decay[rays]
-            refined, own = self._sheets.take(rays).refined_complex(start, MORE_STEPS)
-            result[rays] = refined
-            branch = branch.copy()
-            branch[rays] = own
-        return result, branch
+    def _in_dimple(self, rays: Rays, known: Real, forward: bool) -> Real:
+        """Return the inner slow roots of rays that cross the dimple at an optic axis, one on either side of its tip."""
+        sheets = self._sheets.take(rays)
+        ahead, back = self._forward[1][rays], self._backward[1][rays]
+        pair = sheets.near_axis(0.5 * (ahead + back))
+        reach = NEAR_AXIS**2 * (sheets.kappa * sheets.kappa + ahead * ahead)
+        near = (sheets.nearest(ahead) < reach) & (sheets.nearest(back) < reach)
+        root = np.minimum(*pair) if forward else np.maximum(*pair)
+        return np.where(near, sheets.refined(root, SLOW, MORE_STEPS), sheets.refined(known, SLOW, MORE_STEPS))
+
+    def _complex(self, slow: Real, fast: Real, second: Real, forward: bool) -> tuple[tuple[Field, Real], ...]:
+        """Return the roots of both modes as complex numbers, evanescent ones refined, and the branch of each."""
+        branches = [np.full(slow.shape, SLOW, slow.dtype), second.copy()]
+        kind = np.result_type(slow, np.complex64)
+        roots: list[Complex] = [slow.astype(kind), fast.astype(kind)]
+        starts = self._forward if forward else self._backward
+        for mode, decay in enumerate(self._decay):
+            rays = np.flatnonzero(~self._free[mode])
+            if rays.size and decay is not None:
+                roots[mode][rays] = starts[mode][rays] + (1j if forward else -1j) * decay[rays]
+                branches[mode][rays] = self._sheets.take(rays).branch(roots[mode][rays])
+        # Of two that are close the quartic knows the mean well, and each but to half the digits.
+        none = ~self._free[0]
+        close = np.flatnonzero(none & (np.abs(roots[0] - roots[1]) < CLOSE * np.abs(roots[0])))
+        if close.size:
+            sheets = self._sheets.take(close)
+            mean = 0.5 * (roots[0][close] + roots[1][close])
+            roots[0][close], roots[1][close], _ = sheets.split(mean)
+            branches[0][close], branches[1][close] = SLOW, FAST
+        for mode in (0, 1):
+            rays = np.flatnonzero(~self._free[mode])
+            if rays.size:
+                sheets = self._sheets.take(rays)
+                roots[mode][rays] = sheets.refined_complex(roots[mode][rays], branches[mode][rays], MORE_STEPS)
+        return (roots[0], branches[0]), (roots[1], branches[1])
 
     def _mode(self, q: Field, branch: Real | float, slow: BoolArray) -> Mode:
         """Return the fields of waves with given roots on given branches."""
@@ -221,7 +252,7 @@ class FramedBiaxial(FramedMedium):
         first, second = modes
         q = first.q.real
         limit = ONE_FRAME**2 * (self.frame.kappa**2 + q * q)
-        rays = np.flatnonzero((self._sheets.nearest(q)[0] < limit) & self._free[1])
+        rays = np.flatnonzero((self._sheets.nearest(q) < limit) & self._free[1])
         if not rays.size:
             return
         a, b = _selected(first, rays), _selected(second, rays)
@@ -230,6 +261,25 @@ class FramedBiaxial(FramedMedium):
         share = np.where(grazing, 0.0, bilinear(a, b)) / np.where(grazing, 1.0, norm)
         for values, change in zip(_components(second), _components(a), strict=True):
             values[rays] -= share * change
+
+
+def _real_roots(sheets: Sheets, centre: Real, square: Real) -> tuple[BoolArray, tuple[Real, Real]]:
+    """Return where a factor has real roots, and them, the larger first; elsewhere centre ± √|square|.
+
+    Where the two nearly coincide (near an optic axis, or in all directions of a weakly birefringent crystal) the sign
+    of the square is rounding, and the sheets themselves are asked.
+    """
+    width = np.sqrt(np.abs(square))
+    real, roots = square >= 0.0, (centre + width, centre - width)
+    rays = np.flatnonzero(np.abs(square) < (CLOSE * CLOSE) * (centre * centre))
+    if rays.size:
+        some = sheets.take(rays)
+        slow, fast, sure = some.split(centre[rays])
+        slow, fast = (some.refined(np.asarray(q.real), branch, STEPS) for q, branch in ((slow, SLOW), (fast, FAST)))
+        real[rays] |= sure
+        for root, better in zip(roots, (np.maximum(slow, fast), np.minimum(slow, fast)), strict=True):
+            root[rays] = np.where(sure, better, root[rays])
+    return real, roots
 
 
 def _balance(modes: tuple[Mode, Mode, Mode, Mode]) -> None:

@@ -85,10 +85,9 @@ class Sheets:
         across = self.half * (self.kappa * x1 + q * z1) * (self.kappa * x2 + q * z2)
         return np.asarray(self.mean * (self.kappa * self.kappa + q * q) + across - 1.0)
 
-    def nearest(self, q: Real) -> tuple[Real, BoolArray]:
-        """Return the least |k × o|² of both optic axes, and whether it is that of the second."""
-        first, second = self.square(0, q)[0], self.square(1, q)[0]
-        return np.minimum(first, second), second < first
+    def nearest(self, q: Real) -> Real:
+        """Return the least |k × o|² of both optic axes."""
+        return np.minimum(self.square(0, q)[0], self.square(1, q)[0])
 
     def smooth(self, q: Field) -> tuple[Field, Field]:
         """Return P and dP/dq."""
@@ -137,11 +136,30 @@ class Sheets:
             q = q - np.where(slope != 0.0, p + weight * w, 0.0) / np.where(slope != 0.0, slope, 1.0)
         return np.asarray(q)
 
-    def refined_complex(self, q: Complex, steps: int) -> tuple[Complex, Real]:
-        """Return complex roots after some steps of Newton's method, and the branch of each: F = P + branch·√Q₁·√Q₂."""
+    def split(self, centre: Field) -> tuple[Field, Field, BoolArray]:
+        """Return the slow and the fast root near a point where the sheets are close, and if both surely are real.
+
+        With P linear and W constant they are q − (P ∓ W)/P′. Where |P′| exceeds every possible |W′|, F rises or falls
+        on either sheet, each has one real root, and no rounding of the quartic can make them complex.
+        """
+        p, dp = self.smooth(centre)
+        first, second = self.square(0, centre)[0], self.square(1, centre)[0]
+        w = self.half * np.sqrt(first) * np.sqrt(second)
+        (x1, y1, _), (x2, y2, _) = self.axes
+        # |d|k × o|/dq| is at most the part of o across z.
+        steepest = np.sqrt((x1 * x1 + y1 * y1) * np.abs(second)) + np.sqrt((x2 * x2 + y2 * y2) * np.abs(first))
+        sure = np.abs(dp) > 1.1 * self.half * steepest + TINY
+        safe = np.where(dp != 0.0, dp, 1.0)
+        return centre - (p - w) / safe, centre - (p + w) / safe, sure
+
+    def branch(self, q: Complex) -> Real:
+        """Return the branch of a complex root: −1 if P is W of the principal roots √Q₁·√Q₂, +1 if it is −W."""
         p, _ = self.smooth(q)
-        w = self.half * self._root(q)
-        branch = np.where(np.abs(p + w) < np.abs(p - w), 1.0, -1.0)
+        w = self.half * np.sqrt(self.square(0, q)[0]) * np.sqrt(self.square(1, q)[0])
+        return np.where(np.abs(p + w) < np.abs(p - w), 1.0, -1.0)
+
+    def refined_complex(self, q: Complex, branch: Real, steps: int) -> Complex:
+        """Return complex roots after some steps of Newton's method on F = P + branch·√Q₁·√Q₂."""
         for _ in range(steps):
             p, dp = self.smooth(q)
             first, d_first = self.square(0, q)
@@ -150,19 +168,23 @@ class Sheets:
             flat = w == 0.0
             slope = dp + branch * self.half * (d_first * second + first * d_second) / np.where(flat, 1.0, 2.0 * w)
             q = q - np.where(slope != 0.0, p + branch * self.half * w, 0.0) / np.where(slope != 0.0, slope, 1.0)
-        return np.asarray(q, np.result_type(q, np.complex64)), branch
+        return np.asarray(q, np.result_type(q, np.complex64))
 
-    def near_axis(self, q: Real, which: int) -> tuple[Real, Real]:
+    def near_axis(self, q: Real) -> tuple[Real, Real]:
         """Return the slow and the fast root near q where k all but points along an optic axis.
+
+        Both may be slow: then the line passes the dimple at the axis, and the order means nothing.
 
         There |k × o| = √Q turns a corner as fast as q changes, while P is all but linear and the other axis far: P
         linear, the other factor constant and Q whole leave one quadratic, (P + P′x)² = ½²(α⁻² − γ⁻²)² Q′(Q + …).
         """
         p, dp = self.smooth(q)
-        square, d_square = self.square(which, q)
-        x, y, _ = self.axes[which]
+        squares = self.square(0, q), self.square(1, q)
+        second = squares[1][0] < squares[0][0]
+        square, d_square = (np.where(second, b, a) for a, b in zip(*squares, strict=True))
+        x, y, _ = (np.where(second, b, a) for a, b in zip(*self.axes, strict=True))
         lead = x * x + y * y
-        weight = self.half * self.half * self.square(1 - which, q)[0]
+        weight = self.half * self.half * np.where(second, squares[0][0], squares[1][0])
         a = dp * dp - weight * lead
         b = p * dp - 0.5 * weight * d_square
         # b² − a·c with what cancels taken out by hand.
@@ -172,6 +194,3 @@ class Sheets:
         one, two = (-b + root) / safe, (-b - root) / safe
         first_is_slow = p + dp * one >= p + dp * two
         return np.where(first_is_slow, q + one, q + two), np.where(first_is_slow, q + two, q + one)
-
-    def _root(self, q: Complex) -> Complex:
-        return np.asarray(np.sqrt(self.square(0, q)[0]) * np.sqrt(self.square(1, q)[0]))
