@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 
@@ -81,8 +81,8 @@ class Drawing:
         self.line((a, b - 0.8 * head * along), colour, width, dashed)
         self._head(b, along, head, colour)
 
-    def arc(self, points: Sequence[ArrayLike], colour: str = INK, width: float = 1.4, head: bool = True) -> None:
-        """Draw a curve through many points; with an arrow head at its end."""
+    def arc(self, points: ArrayLike, colour: str = INK, width: float = 1.4, head: bool = True) -> None:
+        """Draw a curve through many points, shape (N, 2); with an arrow head at its end."""
         curve = np.asarray(points, float)
         self.line(curve if not head else curve[:-1], colour, width)
         if head:
