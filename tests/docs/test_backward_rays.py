@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crystal_core.optics import Medium, scatter
 from crystal_core.optics.curvature import gaussian_curvature
 from crystal_core.optics.indicatrix import permittivity
+from crystal_core.optics.mueller import reversed_mueller
 from tests.docs.blocks import ROOT, section
 from tests.docs.reversed_paths import AIR, Glass, Paths, across, dot, reversed_pair, units
 
@@ -99,6 +100,24 @@ def test_how_wrong_the_rule_of_the_paper_is() -> None:
     np.testing.assert_allclose(event.incident[0].ray * N_O, event.incident[0].k, atol=1e-14)  # ordinary: no error
 
 
+def test_a_biaxial_crystal_spares_neither_wave() -> None:
+    count = 100_000
+    rng = np.random.default_rng(2027)
+    radius, turn = np.sqrt(rng.uniform(size=count)), rng.uniform(0.0, 2.0 * np.pi, count)
+    kt = np.stack((radius * np.cos(turn), radius * np.sin(turn), np.zeros(count)))
+    first, helper = units(rng, count), units(rng, count)
+    second = np.cross(first, helper, axis=0)
+    second /= np.sqrt(dot(second, second))
+    axes = np.stack((first, second, np.cross(first, second, axis=0)))
+    event = scatter(NORMAL, kt, Medium.biaxial((1.53, 1.681, 1.6854), axes), AIR)
+    means = []
+    for wave in event.incident:
+        error = angle_deg(in_air(wave.index * across(wave.ray, NORMAL[:, None])), event.transmitted[0].ray)
+        means.append(float(np.nanmean(error)))
+    said = f"is {means[0]:.1f}° for the slow wave and {means[1]:.1f}° for the fast one"
+    assert said in told("The exit lies in the plane of k and the normal")
+
+
 # Polarization
 
 
@@ -150,6 +169,7 @@ def test_reciprocity_of_matrices(name: str, paths: Callable[[], Paths | Glass]) 
     scale = m_f[:, :1, :1]
     m_t = np.swapaxes(m_f, 1, 2)
     assert np.max(np.abs(m_b - REVERSE @ m_t @ REVERSE) / scale) < 1e-10
+    np.testing.assert_allclose(np.moveaxis(reversed_mueller(np.moveaxis(m_f, 0, -1)), -1, 0), REVERSE @ m_t @ REVERSE)
     without, same = (float(np.median(np.max(np.abs(m_b - wrong) / scale, axis=(1, 2)))) for wrong in (m_t, m_f))
     assert f"| {name} | {without:.2f} | {same:.2f} |" in told("Polarization goes backward by the adjoint")
 

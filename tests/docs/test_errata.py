@@ -11,6 +11,7 @@ from scipy.optimize import minimize
 
 from crystal_core.optics import Coherency, Medium, Wave, absorption_along_ray, scatter
 from crystal_core.optics.indicatrix import dissipation, permittivity
+from crystal_core.optics.mueller import degree_of_polarization
 from crystal_core.spectra.colour import xyz_to_linear_srgb
 from crystal_core.spectra.illuminants import d65
 from crystal_core.spectra.observer import colour_matching
@@ -170,7 +171,9 @@ def test_unpolarized_light_has_the_mean_of_transmittances() -> None:
 def degree(c: Coherency) -> float:
     """Return √(1 − 4 det C/(tr C)²)."""
     determinant = c.xx * c.yy - c.xy_re**2 - c.xy_im**2
-    return float(np.sqrt(np.maximum(1.0 - 4.0 * determinant / c.intensity() ** 2, 0.0))[0])
+    result = float(np.sqrt(np.maximum(1.0 - 4.0 * determinant / c.intensity() ** 2, 0.0))[0])
+    assert degree_of_polarization(c)[0] == pytest.approx(result, abs=1e-12)
+    return result
 
 
 def test_modes_are_polarized_and_their_sum_is_not() -> None:
