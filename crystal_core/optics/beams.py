@@ -127,7 +127,7 @@ def _absorbed(beams: Beams, others: Beams, change: Field, phase: Real, sign: int
     q_matrix = np.where(carries, sign * own, 0.0)
     for i in (0, 1):
         q_matrix[:, i, i] += np.where(beams.carries[:, i], beams.q[:, i].real, 0.0)
-    four = beams.carries.all(axis=1) & others.carries.all(axis=1)
+    four = np.asarray(beams.carries.all(axis=1) & others.carries.all(axis=1))
     there = flux_product(beams.psi, product(change, others.psi))
     back = flux_product(others.psi, product(change, beams.psi))
     coupling = (there - np.conj(back).swapaxes(1, 2)) / 2j

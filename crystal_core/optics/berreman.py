@@ -42,7 +42,7 @@ def berreman_matrix(epsilon: Field, kx: Real, ky: Real, kappa: Real | None = Non
         dx: Field = e[:, 0, 0] * ex + e[:, 0, 1] * ey + e[:, 0, 2] * ez
         dy: Field = e[:, 1, 0] * ex + e[:, 1, 1] * ey + e[:, 1, 2] * ez
         return np.stack((x * ez + hy, y * ez - hx, x * hz - dy, y * hz + dx), axis=1)
-    c = 1j * kappa[:, :, :, None]
+    c: Complex = np.asarray(1j * kappa[:, :, :, None], np.complex128)
     ez, hz = _normal_fields(e, c, x, y, (ex, ey, hx, hy))
     dx, dy = (
         e[:, i, 0] * ex + e[:, i, 1] * ey + e[:, i, 2] * ez + c[:, i, 0] * hx + c[:, i, 1] * hy + c[:, i, 2] * hz
@@ -68,7 +68,8 @@ def normal_fields(epsilon: Field, kx: Real, ky: Real, kappa: Real, psi: Field) -
         Shape (N, m) each.
     """
     tangential = (psi[:, 0], psi[:, 1], psi[:, 2], psi[:, 3])
-    return _normal_fields(epsilon[:, :, :, None], 1j * kappa[:, :, :, None], kx[:, None], ky[:, None], tangential)
+    c: Complex = np.asarray(1j * kappa[:, :, :, None], np.complex128)
+    return _normal_fields(epsilon[:, :, :, None], c, kx[:, None], ky[:, None], tangential)
 
 
 def _normal_fields(

@@ -1,4 +1,4 @@
-"""Stacks of plates against pyElli, an independent implementation of Berreman's method (which transfers, not scatters)."""
+"""Stacks of plates against pyElli, an independent implementation of Berreman's method."""
 
 from __future__ import annotations
 
