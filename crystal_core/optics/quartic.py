@@ -10,6 +10,12 @@ from crystal_core.optics.arrays import Real
 
 __all__ = ["Quadratics", "real_quadratics"]
 
+SMALL_ROOT = 1e-3
+"""Resolvent root, relative to p, below which the trigonometric formula has lost its digits."""
+
+LARGEST_STEP = 1e-2
+"""Largest relative step of Newton's method that is taken for a refinement."""
+
 SMALL_RESOLVENT = 1e-2
 """Resolvent root, relative to the quartic's own scale, below which r/(2√2m) loses more digits than a square root."""
 
@@ -71,9 +77,20 @@ def _largest_resolvent_root(p: Real, r: Real, s: Real) -> Real:
         side = np.copysign(np.where(side > 0.0, side, 1.0), -v)
         t = np.where(three, t, side + u / side)
     m = np.maximum(t - p3, 0.0)
+    few = np.flatnonzero(m < SMALL_ROOT * p)
+    if few.size:
+        m[few] = _small_root(p[few], linear[few], constant[few])
     for _ in range(2):
         value = constant + m * (linear + m * (p + m))
         slope = linear + m * (2.0 * p + 3.0 * m)
-        step = np.where(slope > 0.0, value, 0.0) / np.where(slope > 0.0, slope, 1.0)
-        m = np.maximum(m - step, 0.0)
+        # At a double root a step means nothing.
+        good = np.abs(value) < LARGEST_STEP * m * slope
+        m = m - np.where(good, value, 0.0) / np.where(good, slope, 1.0)
     return np.asarray(m)
+
+
+def _small_root(p: Real, linear: Real, constant: Real) -> Real:
+    """Return the root for p > 0 without m³, a little too large: it keeps its digits where m all but vanishes."""
+    root = np.sqrt(linear * linear - 4.0 * p * constant)
+    outside = np.where(linear > 0.0, linear + root, 1.0)
+    return np.where(linear > 0.0, -2.0 * constant / outside, (root - linear) / (2.0 * p))
