@@ -6,6 +6,8 @@ import pytest
 from crystal_core.optics import Coherency, Medium, interface_frame, scatter, transverse_frame
 from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.interface import solve_face
+from crystal_core.optics.mueller import measured
+from tests.reference.media import random_frames
 
 AIR = Medium.isotropic(1.0)
 COUNT = 500
@@ -66,8 +68,10 @@ def test_power_into_is_the_quadratic_form() -> None:
     np.testing.assert_allclose(c.power_into(j[0], j[1]), expected, rtol=1e-12)
 
 
-def _crystal(rng: np.random.Generator) -> Medium:
-    return Medium.uniaxial(rng.uniform(1.3, 2.0, COUNT), rng.uniform(1.3, 2.0, COUNT), _unit(rng, COUNT))
+def _crystal(rng: np.random.Generator, kind: str) -> Medium:
+    if kind == "uniaxial":
+        return Medium.uniaxial(rng.uniform(1.3, 2.0, COUNT), rng.uniform(1.3, 2.0, COUNT), _unit(rng, COUNT))
+    return Medium.biaxial(rng.uniform(1.3, 2.0, (3, COUNT)), random_frames(rng, COUNT))
 
 
 def _facing(z: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -81,10 +85,10 @@ def _tangential(k: np.ndarray, z: np.ndarray) -> np.ndarray:
 class Path:
     """Air → one mode of a crystal → air, over random crystals, faces and directions, as the renderer goes it."""
 
-    def __init__(self, seed: int, mode: int) -> None:
+    def __init__(self, seed: int, kind: str, mode: int) -> None:
         rng = np.random.default_rng(seed)
         self.mode = mode
-        self.crystal = _crystal(rng)
+        self.crystal = _crystal(rng, kind)
         self.d = _unit(rng, COUNT)
         self.z_in = _facing(_unit(rng, COUNT), self.d)
         wave = scatter(self.z_in, _tangential(self.d, self.z_in), AIR, self.crystal).transmitted[mode]
@@ -123,35 +127,32 @@ class Path:
         return Coherency(out.xx, out.yy, -out.xy_re, out.xy_im)
 
 
-def _trace(w: Coherency, c: Coherency) -> np.ndarray:
-    """Return tr(W C)."""
-    return w.xx * c.xx + w.yy * c.yy + 2 * (w.xy_re * c.xy_re + w.xy_im * c.xy_im)
-
-
+@pytest.mark.parametrize("kind", ["uniaxial", "biaxial"])
 @pytest.mark.parametrize("mode", [0, 1])
-def test_a_path_gives_the_same_number_from_either_end(mode: int) -> None:
+def test_a_path_gives_the_same_number_from_either_end(kind: str, mode: int) -> None:
     """tr(W · J C J†) = tr(J† W J · C) with J from the code's own faces, met from either side."""
     rng = np.random.default_rng(4)
-    path = Path(5, mode)
+    path = Path(5, kind, mode)
     c, _ = _hermitian(rng, COUNT)
     w, _ = _hermitian(rng, COUNT)
-    there, back = _trace(w, path.forward(c)), _trace(path.backward(w), c)
+    there, back = measured(w, path.forward(c)), measured(path.backward(w), c)
     assert there.min() > 0
     np.testing.assert_allclose(back, there, rtol=1e-10)
 
 
+@pytest.mark.parametrize("kind", ["uniaxial", "biaxial"])
 @pytest.mark.parametrize("mode", [0, 1])
-def test_mutants_of_the_adjoint_are_caught(mode: int) -> None:
+def test_mutants_of_the_adjoint_are_caught(kind: str, mode: int) -> None:
     """The sign of p forgotten, and multiplication on the left."""
     rng = np.random.default_rng(6)
-    path = Path(7, mode)
+    path = Path(7, kind, mode)
     c, _ = _hermitian(rng, COUNT)
     w, _ = _hermitian(rng, COUNT)
-    there = _trace(w, path.forward(c))
+    there = measured(w, path.forward(c))
     flipped = Coherency(w.xx, w.yy, -w.xy_re, w.xy_im)
     left = path.forward(w)  # J W J†: multiplied on the left
     for wrong in (path.backward(flipped), left):
-        assert np.median(np.abs(_trace(wrong, c) / there - 1.0)) > 0.03
+        assert np.median(np.abs(measured(wrong, c) / there - 1.0)) > 0.03
 
 
 @pytest.mark.parametrize("seed", [7, 8])
