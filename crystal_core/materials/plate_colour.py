@@ -23,8 +23,8 @@ LONGEST_NM = 780.0
 
 SAMPLES_PER_FRINGE = 8.0
 
-MOST_WAVELENGTHS = 1_000_000
-"""Longest grid, some fifteen seconds of work: enough for an exact plate of 1 cm of calcite."""
+MOST_SAMPLES = 1_000_000
+"""Most wavelengths times plates: some fifteen seconds of work. Enough for an exact plate of 1 cm of calcite."""
 
 CHUNK = 8192
 """Wavelengths computed at a time: what the processor's cache holds."""
@@ -95,8 +95,8 @@ def plate_colours(
     Raises
     ------
     InputError
-        The stack is so thick that its fringes would take more than 1,000,000 wavelengths; whatever `plate_stack` and
-        `transmittance` do not take.
+        The stack is so thick that its fringes would take too many wavelengths (`wavelength_grid`); whatever
+        `plate_stack` and `transmittance` do not take.
     """
     wavelengths = wavelength_grid(describe, coherent)
     weights = d65(wavelengths) * colour_matching(wavelengths)
@@ -120,7 +120,7 @@ def wavelength_grid(describe: Callable[[Real], Sequence[Plate]], coherent: Coher
     Raises
     ------
     InputError
-        More than 1,000,000 would be needed.
+        More than 1,000,000 would be needed, divided by the number of plates.
     """
     grid = np.linspace(SHORTEST_NM, LONGEST_NM, round(LONGEST_NM - SHORTEST_NM) + 1)
     plates = describe(grid)
@@ -132,12 +132,12 @@ def wavelength_grid(describe: Callable[[Real], Sequence[Plate]], coherent: Coher
         group = np.abs(path - grid * np.gradient(path, grid))
         steps.append(grid * grid / (SAMPLES_PER_FRINGE * np.maximum(np.maximum(path, group), 1e-9)))
     count = int(np.ceil((LONGEST_NM - SHORTEST_NM) / min(float(step.min()) for step in steps))) + 1
-    if count > MOST_WAVELENGTHS:
-        other = ' or coherent = "single-pass"' if coherent == "exact" else ' or coherent = "incoherent"'
+    if count * len(plates) > MOST_SAMPLES:
+        other = '"single-pass" or "incoherent"' if coherent == "exact" else '"incoherent"'
         raise InputError.at(
             "/plates",
-            f"the fringes of so thick a stack need {count} wavelengths, more than {MOST_WAVELENGTHS}; "
-            f"use thinner plates{other}",
+            f"the fringes of so thick a stack need {count} wavelengths for each of {len(plates)} plates, more than "
+            f"{MOST_SAMPLES} in all; thinner plates or coherent = {other} need fewer",
         )
     return np.linspace(SHORTEST_NM, LONGEST_NM, count)
 

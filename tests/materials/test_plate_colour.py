@@ -153,6 +153,11 @@ def test_grids_at_most_1_nm_and_with_dispersion_finer() -> None:
 def test_a_stack_too_thick_is_refused_before_any_work() -> None:
     with pytest.raises(InputError, match=r"need \d+ wavelengths"):
         plate_colours(always(Plate(QUARTZ, 1e5)), 1.0, 0.0, 90.0)
+    # Many plates are as much work as many wavelengths.
+    plate = Plate(QUARTZ, 2000.0)
+    assert wavelength_grid(always(plate), "exact").size < 300_000
+    with pytest.raises(InputError, match="each of 8 plates"):
+        wavelength_grid(always(*[plate] * 8), "exact")
 
 
 def test_single_pass_and_exact_are_nearly_the_same_colour() -> None:

@@ -213,6 +213,35 @@ def test_nothing_happens_at_critical_incidence(coherent: Coherence, off: float) 
         assert np.all(total[0] > 0.5)
 
 
+@pytest.mark.parametrize("coherent", ["exact", "single-pass"])
+@pytest.mark.parametrize("kappa", [0.0, 0.8, 1.45, 1.55])
+def test_the_isotropic_limit_has_no_jumps(coherent: Coherence, kappa: float) -> None:
+    """n_e → n_o and three indices → one, total reflection included; also a hair off normal incidence."""
+    axis = np.array((0.48, 0.6, 0.64))
+    turn = np.array(((0.6, 0.8, 0.0), (-0.48, 0.36, 0.8), (0.64, -0.48, 0.6)))
+    kt = (kappa, 0.0, 0.0)
+    limit = plate_stack([Plate(Medium.isotropic(1.5), 3.0)], WAVELENGTHS, 1.6, kt, coherent)
+    for split_ in (0.0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-8):
+        for medium in (
+            Medium.uniaxial(1.5, 1.5 * (1 + split_), axis),
+            Medium.biaxial((1.5, 1.5 * (1 + split_), 1.5 * (1 - split_)), turn),
+        ):
+            near = plate_stack([Plate(medium, 3.0)], WAVELENGTHS, 1.6, kt, coherent)
+            bound = 1e-11 + 1e3 * split_
+            np.testing.assert_allclose(near.mueller_transmitted, limit.mueller_transmitted, atol=bound)
+            np.testing.assert_allclose(near.mueller_reflected, limit.mueller_reflected, atol=bound)
+
+
+def test_a_hair_off_normal_incidence_is_normal_incidence() -> None:
+    medium = Medium.biaxial((1.5, 1.6, 1.7), np.eye(3), (10.0, 20.0, 30.0))
+    for coherent in MODES:
+        normal = plate_stack([Plate(medium, 3.0)], WAVELENGTHS, 1.6, None, coherent)
+        for hair in (1e-300, 1e-16, 1e-14, 1e-11):
+            beside = plate_stack([Plate(medium, 3.0)], WAVELENGTHS, 1.6, (hair, 0.0, 0.0), coherent)
+            np.testing.assert_allclose(beside.mueller_transmitted, normal.mueller_transmitted, atol=1e-9)
+            np.testing.assert_allclose(beside.mueller_reflected, normal.mueller_reflected, atol=1e-9)
+
+
 def test_a_matrix_with_one_eigenvector_travels() -> None:
     """exp(i s [[1, 1], [0, 1]]) = exp(i s) (1 + i s N): a singular axis of an absorbing crystal."""
     q = np.array([[[1.0, 1.0], [0.0, 1.0]]], complex)
