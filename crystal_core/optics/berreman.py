@@ -8,7 +8,7 @@ from crystal_core.optics.arrays import Complex, Field, Real
 from crystal_core.optics.indicatrix import dissipation, permittivity
 from crystal_core.optics.medium import Medium
 
-__all__ = ["activity", "berreman_matrix", "flux_product", "normal_fields", "plate_matrix"]
+__all__ = ["activity", "berreman_matrix", "flux_product", "normal_fields", "plate_matrix", "stacked"]
 
 
 def berreman_matrix(epsilon: Field, kx: Real, ky: Real, kappa: Real | None = None) -> Field:
@@ -113,12 +113,12 @@ def plate_matrix(medium: Medium, wavelength_nm: Real, kx: Real, ky: Real) -> Fie
     kx, ky : Real
         Tangential wave vector in units of k0, shape (N,).
     """
-    epsilon: Field = _stack(permittivity(medium), kx.size)
+    epsilon: Field = stacked(permittivity(medium), kx.size)
     if medium.absorption_per_mm is not None:
         k0_per_mm = 2e6 * np.pi / wavelength_nm
-        epsilon = epsilon + 1j * _stack(dissipation(medium), kx.size) / k0_per_mm[:, None, None]
+        epsilon = epsilon + 1j * stacked(dissipation(medium), kx.size) / k0_per_mm[:, None, None]
     kappa = activity(medium)
-    return berreman_matrix(epsilon, kx, ky, None if kappa is None else _stack(kappa, kx.size))
+    return berreman_matrix(epsilon, kx, ky, None if kappa is None else stacked(kappa, kx.size))
 
 
 def flux_product(a: Field, b: Field) -> Complex:
@@ -132,7 +132,7 @@ def flux_product(a: Field, b: Field) -> Complex:
     return np.asarray(product, np.complex128)
 
 
-def _stack(tensor: Real, count: int) -> Real:
+def stacked(tensor: Real, count: int) -> Real:
     """Return a tensor (3, 3) or (3, 3, N) as (N, 3, 3)."""
     wide = tensor[:, :, None] if tensor.ndim == 2 else tensor
     return np.moveaxis(np.broadcast_to(wide, (3, 3, count)), 2, 0)

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crystal_core.errors import InputError, NotSupportedError
-from crystal_core.optics.arrays import Real, dot
+from crystal_core.errors import InputError
+from crystal_core.optics.active_directions import EllipticalWave, elliptical_waves
+from crystal_core.optics.arrays import Field, Real, dot
+from crystal_core.optics.berreman import activity, stacked
 from crystal_core.optics.frames import transverse_frame
-from crystal_core.optics.indicatrix import BiaxialIndicatrix
+from crystal_core.optics.indicatrix import BiaxialIndicatrix, permittivity
 from crystal_core.optics.medium import UNIT_TOLERANCE, Medium
 
 __all__ = ["PlaneWave", "waves_along"]
@@ -24,18 +27,20 @@ ON_AXIS = 1e-15
 class PlaneWave:
     """One plane wave of a medium in each of N directions.
 
-    The fields obey k × E = H and k × H = −D; D ⟂ k, while the ray is across E.
+    The fields obey k × E = B and k × H = −D; D ⟂ k. Without optical activity B = H, and the ray is across E. With it
+    (`berreman.activity`) D = ε E + i κ H and B = H − i κ E, and the fields are complex, of elliptical vibrations.
 
     Parameters
     ----------
     mode : NDArray[np.str_]
-        "s", "p" (isotropic), "ordinary", "extraordinary" (uniaxial), "slow" or "fast" (three indices), shape (N,).
+        "s", "p" (isotropic), "ordinary", "extraordinary" (uniaxial), "slow" or "fast" (three indices, or optically
+        active), shape (N,).
     index : Real
         Refractive index n = |k|, shape (N,).
     k : Real
         Wave vector n·s in units of 2π/λ, shape (3, N).
-    d, e, h : Real
-        Fields D = ε E, E of unit length, H = k × E, shape (3, N).
+    d, e, h : Field
+        Fields D, E of unit length and H, shape (3, N); complex in an optically active medium, real in others.
     ray : Real
         Unit vector of the energy flow Re(E × H*), shape (3, N).
     """
@@ -43,16 +48,16 @@ class PlaneWave:
     mode: NDArray[np.str_]
     index: Real
     k: Real
-    d: Real
-    e: Real
-    h: Real
+    d: Field
+    e: Field
+    h: Field
     ray: Real
 
     def walk_off(self) -> Real:
         """Return the angle between wave normal and ray, radians, shape (N,)."""
-        # |sin| is |E·s|, since the ray is across E and in the plane of E and s; well conditioned for every walk-off
-        # there is, unlike the arc cosine.
-        return np.asarray(np.arcsin(np.minimum(np.abs(dot(self.e, self.k)) / self.index, 1.0)))
+        # By the sine, well conditioned for every walk-off there is, unlike the arc cosine.
+        across = _cross(self.k, self.ray)
+        return np.asarray(np.arcsin(np.minimum(np.sqrt(dot(across, across)) / self.index, 1.0)))
 
     def ray_vector(self) -> Real:
         """Return the point r of the ray surface, r ∥ ray and k·r = 1, shape (3, N): |r| is the ray velocity over c."""
@@ -73,6 +78,10 @@ def waves_along(medium: Medium, wave_normal: ArrayLike) -> tuple[PlaneWave, Plan
     D_slow ∥ u₁ − u₂. So the directions are good to 10⁻¹⁶/θ at an angle θ to an optic axis, where the roots of
     Fresnel's equation would leave 10⁻¹⁶/θ². Exactly on the optic axis any pair serves, and one is returned.
 
+    In an optically active medium, of any class, they are (slow, fast), elliptical, and circular along an optic axis:
+    solved for without expansion in the gyration, see `active_directions`. Their fields are good to
+    10⁻¹⁶/(n_slow − n_fast), a difference that does not vanish at an optic axis.
+
     Absorption is not looked at: the waves are those of the real ε.
 
     Parameters
@@ -86,12 +95,10 @@ def waves_along(medium: Medium, wave_normal: ArrayLike) -> tuple[PlaneWave, Plan
     ------
     InputError
         Wave normals that are not unit vectors or not of the shape (3, N), or not as many as the medium has indices.
-    NotSupportedError
-        The medium is optically active: its modes are elliptical.
     """
-    if medium.gyration is not None and np.any(medium.gyration):
-        raise NotSupportedError("the waves of an optically active medium (one with a gyration tensor) are elliptical")
     s = _unit(medium, wave_normal)
+    if medium.gyration is not None and np.any(medium.gyration):
+        return _active(medium, s)
     if medium.axes is not None:
         return _biaxial(medium, s)
     if medium.axis is not None:
@@ -150,14 +157,28 @@ def _biaxial(medium: Medium, s: Real) -> tuple[PlaneWave, PlaneWave]:
 
     def field(d: Real) -> Real:
         total = np.zeros_like(d)
-        for axis, permittivity in principal:
-            total += dot(axis, d) / permittivity * axis
+        for axis, square in principal:
+            total += dot(axis, d) / square * axis
         return total
 
     return (
         _wave("slow", s, n_slow, np.where(by_fast, other, longer), field),
         _wave("fast", s, n_fast, np.where(by_fast, longer, other), field),
     )
+
+
+def _active(medium: Medium, s: Real) -> tuple[PlaneWave, PlaneWave]:
+    kappa = activity(medium)
+    assert kappa is not None
+    slow, fast = elliptical_waves(stacked(permittivity(medium), s.shape[1]), stacked(kappa, s.shape[1]), s)
+    return _elliptical("slow", s, slow), _elliptical("fast", s, fast)
+
+
+def _elliptical(mode: str, s: Real, wave: EllipticalWave) -> PlaneWave:
+    ray = _cross(wave.e, np.conj(wave.h)).real
+    ray /= np.sqrt(dot(ray, ray))
+    n = wave.index
+    return PlaneWave(np.full(n.shape, mode), n, n * s, wave.d, wave.e, wave.h, ray)
 
 
 def _wave(mode: str, s: Real, n: Real, d: Real, field: Callable[[Real], Real]) -> PlaneWave:
@@ -186,7 +207,15 @@ def _across(s: Real, axis: Real) -> tuple[Real, Real]:
     return u, sin
 
 
-def _cross(a: Real, b: Real) -> Real:
+@overload
+def _cross(a: Real, b: Real) -> Real: ...
+
+
+@overload
+def _cross(a: Field, b: Field) -> Field: ...
+
+
+def _cross(a: Field, b: Field) -> Field:
     """Return a × b, both (3, N) or one of them (3, 1)."""
     return np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
 
@@ -203,7 +232,8 @@ def _unit(medium: Medium, wave_normal: ArrayLike) -> Real:
     length = np.sqrt(dot(s, s))
     if not np.all(np.abs(length - 1.0) <= UNIT_TOLERANCE):
         raise InputError.at("/wave_normal", "the wave normals must be unit vectors")
-    directions = [t for t, one in ((medium.axis, 1), (medium.axes, 2)) if t is not None and t.ndim > one]
+    given = ((medium.axis, 1), (medium.axes, 2), (medium.gyration, 2))
+    directions = [t for t, one in given if t is not None and t.ndim > one]
     if any(values.shape[-1] != s.shape[1] for values in (*medium.indices, *directions) if values.ndim):
         raise InputError.at("/wave_normal", f"the medium is not one for {s.shape[1]} wave normals")
     return np.asarray(s / length)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from crystal_core.errors import NotSupportedError
+import numpy as np
+
+from crystal_core.optics.active import FramedActive
 from crystal_core.optics.biaxial import FramedBiaxial
 from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.frames import InterfaceFrame
@@ -14,14 +16,8 @@ __all__ = ["framed"]
 
 
 def framed(medium: Medium, frame: InterfaceFrame) -> FramedMedium:
-    """Return a medium in the frame of an interface, by its number of principal indices.
-
-    Raises
-    ------
-    NotSupportedError
-        The medium is optically active.
-    """
-    if medium.gyration is not None:
-        raise NotSupportedError("optically active media cannot be put at an interface yet")
+    """Return a medium in the frame of an interface, by its activity and its number of principal indices."""
+    if medium.gyration is not None and np.any(medium.gyration):
+        return FramedActive(medium, frame)
     kinds: tuple[type[FramedMedium], ...] = (FramedIsotropic, FramedUniaxial, FramedBiaxial)
     return kinds[len(medium.indices) - 1](medium, frame)

@@ -16,13 +16,15 @@ grazing g(ψ₁⁻_i, ψ₁⁻_i) vanishes; such rays are solved by the plain 4�
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from crystal_core.errors import InputError
-from crystal_core.optics.arrays import BoolArray, Field, Real, dot
+from crystal_core.optics.active import FramedActive
+from crystal_core.optics.arrays import BoolArray, Field, Rays, Real, dot
 from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.frames import InterfaceFrame, interface_frame
@@ -33,6 +35,11 @@ __all__ = ["Face", "Scattering", "scatter", "solve_face"]
 
 GRAZING = 1e-9
 """|g(ψ, ψ)|/|ψ|² below which a reflected wave counts as grazing: the division would cost half the digits."""
+
+SINGULAR = 1e-13
+"""Determinant of unit columns, and share of the largest singular value, below which they count as dependent."""
+
+ALL = slice(None)
 
 NORMAL_PART = 1e-9
 """Largest normal component of a tangential wave vector that is taken for rounding."""
@@ -73,6 +80,51 @@ class Face:
         projected = t[0] * bilinear(wave, self.transmitted[0]) + t[1] * bilinear(wave, self.transmitted[1])
         return projected / wave.norm()
 
+    def grazing(self, lengths: list[Real]) -> NDArray[np.intp]:
+        """Return the rays for which `reflection` loses digits, by the lengths of both reflected fields, shape (N,)."""
+        smallest = np.minimum(*(np.abs(w.norm()) / n**2 for w, n in zip(self.reflected, lengths, strict=True)))
+        return np.flatnonzero(smallest < GRAZING)
+
+
+@dataclass(slots=True)
+class ContinuityFace(Face):
+    """The waves at a face whose source is optically active: there g does not part them, and ψ is solved for.
+
+    All four amplitudes come from the 4×4 system [ψ₂⁺ −ψ₁⁻] a = ψ_in.
+    """
+
+    _solved: Field | None = None
+
+    def transmission(self, j: int) -> tuple[Field, Field]:
+        """Return the amplitudes of the two transmitted modes for incident mode `j`, shape (N,) each."""
+        solved = self._amplitudes()
+        return solved[:, 0, j], solved[:, 1, j]
+
+    def reflection(self, i: int, j: int) -> Field:
+        """Return the amplitude of reflected mode `i` for incident mode `j`, shape (N,)."""
+        return self._amplitudes()[:, 2 + i, j]
+
+    def grazing(self, lengths: list[Real]) -> NDArray[np.intp]:  # noqa: ARG002
+        """Return no rays: the system holds at grazing incidence too."""
+        return np.empty(0, np.intp)
+
+    def _amplitudes(self) -> Field:
+        """Return all amplitudes, shape (N, 4, 2)."""
+        if self._solved is None:
+            outgoing = _tangential((*self.transmitted, *self.reflected))
+            size = np.sqrt(np.sum(np.abs(outgoing) ** 2, axis=1))
+            matrix = outgoing / size[:, None, :]
+            matrix[:, :, 2:] *= -1.0
+            incoming = _tangential(self.incident)
+            # Where a grazing wave on either side is the same one the system is singular, and consistent.
+            singular = np.abs(np.linalg.det(matrix)) < SINGULAR
+            safe = np.where(singular[:, None, None], np.eye(4), matrix)
+            solved = np.linalg.solve(safe, incoming)
+            rays = np.flatnonzero(singular)
+            solved[rays] = np.einsum("nij,njk->nik", np.linalg.pinv(matrix[rays], rcond=SINGULAR), incoming[rays])
+            self._solved = solved / size[:, :, None]
+        return self._solved
+
 
 def solve_face(source: FramedMedium, target: FramedMedium, source_evanescent: bool, target_evanescent: bool) -> Face:
     """Return the waves at each ray's face; amplitudes follow on demand.
@@ -85,7 +137,8 @@ def solve_face(source: FramedMedium, target: FramedMedium, source_evanescent: bo
         Whether a wave of that medium may be evanescent in this batch; see `FramedMedium.pair`.
     """
     incident, reflected = source.both_pairs(source_evanescent)
-    return Face(source.frame, incident, reflected, target.pair(+1, target_evanescent))
+    kind = ContinuityFace if isinstance(source, FramedActive) else Face
+    return kind(source.frame, incident, reflected, target.pair(+1, target_evanescent))
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,8 +216,7 @@ def scatter(normal: ArrayLike, tangential_k: ArrayLike, source: Medium, target: 
 
 def _amplitudes(face: Face, scale: list[list[Real]]) -> tuple[Amplitudes, Amplitudes]:
     """Return transmitted and reflected amplitudes between waves of unit field."""
-    smallest = np.minimum(*(np.abs(w.norm()) / length**2 for w, length in zip(face.reflected, scale[1], strict=True)))
-    grazing = np.flatnonzero(smallest < GRAZING)
+    grazing = face.grazing(scale[1])
     with np.errstate(divide="ignore", invalid="ignore"):  # grazing rays are solved anew below
         t = [[face.transmission(j)[i] * scale[2][i] / scale[0][j] for j in (0, 1)] for i in (0, 1)]
         r = [[face.reflection(i, j) * scale[1][i] / scale[0][j] for j in (0, 1)] for i in (0, 1)]
@@ -179,20 +231,22 @@ def _amplitudes(face: Face, scale: list[list[Real]]) -> tuple[Amplitudes, Amplit
 
 def _solve_4x4(face: Face, scale: list[list[Real]], rays: np.ndarray) -> Field:
     """Solve [ψ₂⁺ −ψ₁⁻] a = ψ_in for the few rays where a reflected wave grazes; shape (rays, 4, 2)."""
-
-    def tangential(modes: tuple[Mode, Mode], lengths: list[Real]) -> Field:
-        columns = []
-        for mode, length in zip(modes, lengths, strict=True):
-            parts = [np.zeros(mode.q.shape) if v is None else v for v in (mode.ex, mode.ey, mode.hx, mode.hy)]
-            columns.append(np.stack([(v / length)[rays] for v in parts], axis=-1))
-        return np.stack(columns, axis=-1)
-
-    ahead, back = tangential(face.transmitted, scale[2]), tangential(face.reflected, scale[1])
-    incoming = tangential(face.incident, scale[0])
+    ahead, back = (_tangential(m, n, rays) for m, n in ((face.transmitted, scale[2]), (face.reflected, scale[1])))
+    incoming = _tangential(face.incident, scale[0], rays)
     matrix = np.concatenate((ahead, -back), axis=-1)
     # Where both of a pair's fields fall together (a grazing wave equals its own reflection) the system is singular
     # and consistent; the least-norm solution splits nothing and keeps continuity.
     return np.stack([np.linalg.lstsq(m, v, rcond=1e-13)[0] for m, v in zip(matrix, incoming, strict=True)])
+
+
+def _tangential(modes: Sequence[Mode], lengths: Sequence[Real] | None = None, rays: Rays = ALL) -> Field:
+    """Return ψ of some modes, divided by their lengths, as columns, shape (rays, 4, modes)."""
+    columns = []
+    for place, mode in enumerate(modes):
+        parts = [np.zeros(mode.q.shape) if v is None else v for v in (mode.ex, mode.ey, mode.hx, mode.hy)]
+        column = np.stack([np.broadcast_to(v, mode.q.shape)[rays] for v in parts], axis=-1)
+        columns.append(column if lengths is None else column / lengths[place][rays][:, None])
+    return np.stack(columns, axis=-1)
 
 
 def _replaced(values: Field, rays: np.ndarray, new: Field) -> Field:

@@ -15,7 +15,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from crystal_core.errors import InputError
+from crystal_core.errors import InputError, NotSupportedError
 from crystal_core.optics.arrays import Real
 from crystal_core.optics.directions import waves_along
 from crystal_core.optics.indicatrix import BiaxialIndicatrix, optical_class, principal_frame
@@ -210,5 +210,7 @@ def _check(medium: Medium, kind: str, resolution: int) -> None:
     several = any(n.ndim for n in medium.indices)
     several |= medium.axis is not None and medium.axis.ndim > 1
     several |= medium.axes is not None and medium.axes.ndim > 2
+    if medium.gyration is not None and np.any(medium.gyration):
+        raise NotSupportedError("wave surfaces of optically active media (with a gyration tensor) are not drawn")
     if several:
         raise InputError.at("", "a wave surface belongs to one medium at one wavelength")

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crystal_core.errors import InputError, NotSupportedError
+from crystal_core.errors import InputError
 from crystal_core.optics.arrays import Real
 from crystal_core.optics.directions import PlaneWave, waves_along
 from crystal_core.optics.indicatrix import BiaxialIndicatrix, permittivity
@@ -296,16 +296,12 @@ def test_wrong_wave_normals_are_refused(wave_normal: Real) -> None:
         Medium.isotropic([1.5, 1.6, 1.7]),
         Medium.uniaxial(1.5, 1.6, np.eye(3)),
         Medium.biaxial(ARAGONITE, np.stack([np.eye(3)] * 3, axis=2)),
+        Medium.isotropic(1.5).active(np.stack([1e-5 * np.eye(3)] * 3, axis=2)),
     ],
 )
 def test_a_medium_of_another_number_of_rays_is_refused(medium: Medium) -> None:
     with pytest.raises(InputError, match="2 wave normals"):
         waves_along(medium, np.eye(3)[:, :2])
-
-
-def test_an_active_medium_is_refused_by_name() -> None:
-    with pytest.raises(NotSupportedError, match="gyration"):
-        waves_along(Medium.uniaxial(1.5443, 1.5534, (0, 0, 1)).active(np.diag((1e-5, 1e-5, 7e-5))), np.eye(3))
 
 
 @pytest.mark.parametrize("name", ["isotropic", "calcite", "aragonite", "in another order", "huge"])
