@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from crystal_core.optics import Medium, Scattering, Wave, scatter, transverse_frame
 from crystal_core.optics.arrays import BoolArray, Complex, Real
-from tests.reference.media import Kind, random_media, random_units
+from tests.reference.media import KINDS, Kind, random_media, random_units
 
-__all__ = ["AIR", "Beam", "Turn", "facing", "internal_path", "norm", "reversed_path", "tangential"]
+__all__ = [
+    "AIR",
+    "PATH_KINDS",
+    "Beam",
+    "PathKind",
+    "Turn",
+    "facing",
+    "internal_path",
+    "norm",
+    "reversed_path",
+    "tangential",
+]
+
+PathKind = Kind | Literal["active"]
+PATH_KINDS: tuple[PathKind, ...] = (*KINDS, "active")
 
 AIR = Medium.isotropic(1.0)
 
@@ -121,16 +136,18 @@ def _nearest(waves: tuple[Wave, Wave], k: Real) -> np.ndarray:
 
 
 def internal_path(
-    rng: np.random.Generator, kind: Kind, count: int, modes: tuple[int, int]
+    rng: np.random.Generator, kind: PathKind, count: int, modes: tuple[int, int]
 ) -> tuple[Beam, list[Turn], list[Beam], BoolArray]:
     """Return a beam in air, its three faces, the beams behind them, and for which rays the light comes out again.
 
     The second face reflects all the light: tangential k is above 1. Crystals are those of `random_media` of an index
-    above 1.2, so that there is such a face.
+    above 1.2, so that there is such a face; "active" ones are biaxial and turn the plane of polarization.
     """
-    media = random_media(rng, kind, count)
-    media = type(media)(kind, 1.2 + 0.6 * (media.indices - 1.0), media.axes)
-    crystal = media.medium()
+    media = random_media(rng, "biaxial" if kind == "active" else kind, count)
+    crystal = replace(media, indices=1.2 + 0.6 * (media.indices - 1.0)).medium()
+    if kind == "active":
+        gyration = rng.normal(0.0, 0.02, (3, 3, count))
+        crystal = crystal.active(gyration + gyration.swapaxes(0, 1))
     d = random_units(rng, count)
     beam = Beam.start(d, *transverse_frame(d))
     entry = Turn(facing(random_units(rng, count), d), AIR, crystal, False)
