@@ -70,7 +70,7 @@ class ClosedForm(FramedMedium):
 
     def both_pairs(self, evanescent: bool) -> tuple[tuple[Mode, Mode], tuple[Mode, Mode]]:
         """Return the pairs of `pair` for +1 and for −1, computed together."""
-        first, second = self._pair(BOTH_SIGNS, evanescent)
+        first, second = self._pair(BOTH_SIGNS.astype(self.frame.kappa.dtype), evanescent)
         return (first.half(0), second.half(0)), (first.half(1), second.half(1))
 
     @abstractmethod

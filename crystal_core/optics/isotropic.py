@@ -34,6 +34,6 @@ class FramedIsotropic(ClosedForm):
         kappa = self.frame.kappa
         q = sign * signed_root(self._q2, evanescent)
         ray = (kappa, None, q)
-        s = Mode(q, None, np.ones(kappa.shape), None, -q, None, ray, "s")
+        s = Mode(q, None, np.ones_like(kappa), None, -q, None, ray, "s")
         p = Mode(q, q / n, None, -kappa / n, None, np.broadcast_to(n, kappa.shape), ray, "p")
         return s, p

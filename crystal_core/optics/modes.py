@@ -51,7 +51,7 @@ class Mode:
         return ey * hz - ez * hy, ez * hx - ex * hz, ex * hy - ey * hx
 
     def _whole(self, component: Field | None) -> Field:
-        return np.zeros(self.q.shape) if component is None else component
+        return np.zeros_like(self.q) if component is None else component
 
     def half(self, which: int) -> Mode:
         """Return one row of a mode whose arrays have shape (2, N)."""
@@ -84,7 +84,7 @@ class Mode:
 
     def flux(self) -> Real:
         """Return Re(E × H*)_z, shape (N,)."""
-        total: Real = np.zeros(self.q.shape)
+        total: Real = np.zeros_like(self.q.real)
         if self.ex is not None and self.hy is not None:
             total = total + (self.ex * np.conj(self.hy)).real
         if self.ey is not None and self.hx is not None:

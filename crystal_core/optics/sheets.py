@@ -30,9 +30,6 @@ __all__ = ["Sheets"]
 Axis = tuple[Real, Real, Real]
 """Components along x, y, z of the interface frame."""
 
-TINY = 1e-150
-"""Stands for a vanishing denominator whose numerator vanishes too; the square of it is still a number."""
-
 
 @dataclass(frozen=True, slots=True)
 class Sheets:
@@ -131,7 +128,7 @@ class Sheets:
             first, d_first = self.square(0, q)
             second, d_second = self.square(1, q)
             w = np.sqrt(first * second)
-            slope = dp + weight * (d_first * second + first * d_second) / (2.0 * np.maximum(w, TINY))
+            slope = dp + weight * (d_first * second + first * d_second) / (2.0 * np.maximum(w, np.finfo(w.dtype).tiny))
             # At a grazing wave F touches zero: q is then as good as it gets.
             q = q - np.where(slope != 0.0, p + weight * w, 0.0) / np.where(slope != 0.0, slope, 1.0)
         return np.asarray(q)
@@ -148,7 +145,7 @@ class Sheets:
         (x1, y1, _), (x2, y2, _) = self.axes
         # |d|k × o|/dq| is at most the part of o across z.
         steepest = np.sqrt((x1 * x1 + y1 * y1) * np.abs(second)) + np.sqrt((x2 * x2 + y2 * y2) * np.abs(first))
-        sure = np.abs(dp) > 1.1 * self.half * steepest + TINY
+        sure = np.abs(dp) > 1.1 * self.half * steepest + np.finfo(steepest.dtype).tiny
         safe = np.where(dp != 0.0, dp, 1.0)
         return centre - (p - w) / safe, centre - (p + w) / safe, sure
 
