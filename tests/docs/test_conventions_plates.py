@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 import minerals_db
 from crystal_core.materials import medium as mineral_medium
 from crystal_core.materials.plate_colour import transmittance
-from crystal_core.optics import Medium
+from crystal_core.optics import Coherency, Medium, scatter
 from crystal_core.optics.berreman import activity, berreman_matrix
 from crystal_core.optics.directions import waves_along
 from crystal_core.optics.indicatrix import permittivity
@@ -80,6 +80,48 @@ def test_elliptical_modes_have_the_indices_stated() -> None:
         assert product == pytest.approx(float(NORMAL @ g @ NORMAL) ** 2, rel=0.02)
     # The gyration is the same for the wave that goes the other way.
     assert sorted(np.abs(roots.real))[::2] == pytest.approx(sorted(np.abs(roots.real))[1::2], rel=1e-12)
+
+
+def test_the_slow_wave_of_right_quartz_turns_counter_clockwise() -> None:
+    slow, fast = waves_along(quartz(), NORMAL[:, None])
+    for wave, sign in ((slow, 1.0), (fast, -1.0)):
+        light = Coherency.pure(wave.e[0], wave.e[1], np.ones(1))  # x, y and the propagation z are right-handed
+        assert light.stokes()[:, 0] == pytest.approx((1.0, 0.0, 0.0, sign), abs=1e-9)
+    gyration = quartz().gyration
+    assert gyration is not None
+    assert slow.index[0] - fast.index[0] == pytest.approx(gyration[2, 2, 0] / quartz().indices[0][0], rel=1e-4)
+    assert [str(wave.mode[0]) for wave in (slow, fast)] == ["slow", "fast"]
+
+
+def test_waves_of_an_active_medium_obey_the_stated_relations() -> None:
+    crystal = quartz()
+    kappa, eps, g = activity(crystal), permittivity(crystal)[:, :, 0], crystal.gyration
+    assert kappa is not None
+    assert g is not None
+    kappa = kappa[:, :, 0]
+    n_o = crystal.indices[0][0]
+    np.testing.assert_allclose(kappa, (0.5 * np.trace(g[:, :, 0]) * np.eye(3) - g[:, :, 0]) / n_o, atol=1e-18)
+    for wave in waves_along(crystal, np.array(((0.6,), (0.0,), (0.8,)))):
+        k, d, e, h = (v[:, 0] for v in (wave.k, wave.d, wave.e, wave.h))
+        np.testing.assert_allclose(d, eps @ e + 1j * kappa @ h, atol=1e-14)
+        np.testing.assert_allclose(np.cross(k, e), h - 1j * kappa @ e, atol=1e-14)
+        np.testing.assert_allclose(np.cross(k, h), -d, atol=1e-14)
+        # Its partner is (−k, E*), with H = −H*.
+        np.testing.assert_allclose(np.cross(-k, e.conj()), -h.conj() - 1j * kappa @ e.conj(), atol=1e-14)
+
+
+def test_active_media_at_a_face_keep_the_energy_and_their_names() -> None:
+    kt = np.array(((0.5,), (0.2,), (0.0,)))
+    event = scatter(NORMAL, kt, quartz(), Medium.isotropic(1.0))
+    assert [str(wave.mode[0]) for wave in (*event.incident, *event.reflected)] == ["slow", "fast"] * 2
+    for j in (0, 1):
+        total = sum(power[i][j][0] for power in (event.power_reflected, event.power_transmitted) for i in (0, 1))
+        assert total == pytest.approx(1.0, abs=1e-12)
+    # Reciprocity: the powers between each two modes are those of the path run backward.
+    back = scatter(-NORMAL, -kt, Medium.isotropic(1.0), quartz())
+    for i in (0, 1):
+        through = sum(event.power_transmitted[p][i][0] for p in (0, 1))
+        assert sum(back.power_transmitted[i][p][0] for p in (0, 1)) == pytest.approx(through, rel=1e-10)
 
 
 # Plates
