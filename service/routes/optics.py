@@ -10,7 +10,7 @@ from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
 from crystal_core.errors import Fault, InputError, NotSupportedError
-from service.probes.documents import BadDocument, InvalidJsonError, read_document, read_lines
+from service.probes.documents import BadDocument, InvalidJsonError, read_document, read_documents, read_lines
 from service.probes.interface import INTERFACE, InterfaceAnswer
 from service.probes.plate import PLATE, PlateAnswer
 from service.probes.probe import Probe, UnanswerableError, encode
@@ -21,7 +21,7 @@ __all__ = ["router"]
 
 router = APIRouter(prefix="/v1/optics", tags=["optics"])
 
-JSON_LINES = ("application/jsonl", "application/x-ndjson", "application/x-jsonlines")
+JSON_LINES = ("application/jsonl", "application/x-ndjson", "application/ndjson", "application/x-jsonlines")
 """Media types of JSON Lines; none is registered, these are in use."""
 
 MAX_FAULTS = 100
@@ -67,8 +67,8 @@ def _described(probe: Probe[Any]) -> dict[str, Any]:
 async def interface(request: Request) -> Response:
     """Return incident, reflected and transmitted waves, with the powers and amplitudes of each.
 
-    A body of JSON Lines (`application/jsonl`, `application/x-ndjson`) is answered line by line, in order; if one line
-    is wrong, the answer is a problem.
+    A body of JSON Lines (`application/jsonl`, `application/x-ndjson`; `application/json` will do) is answered line by
+    line, in order; if one line is wrong, the answer is a problem.
     """
     return await _answer(INTERFACE, request)
 
@@ -82,8 +82,8 @@ async def interface(request: Request) -> Response:
 async def plate(request: Request) -> Response:
     """Return transmittance, colour, retardation, Jones and Mueller matrices of a stack of plates.
 
-    A body of JSON Lines (`application/jsonl`, `application/x-ndjson`) is answered line by line, in order; if one line
-    is wrong, the answer is a problem.
+    A body of JSON Lines (`application/jsonl`, `application/x-ndjson`; `application/json` will do) is answered line by
+    line, in order; if one line is wrong, the answer is a problem.
     """
     return await _answer(PLATE, request)
 
@@ -94,19 +94,23 @@ async def _answer(probe: Probe[Any], request: Request) -> Response:
     if not many and kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
         raise ProblemError(415, "media-type", f"The body must be declared as application/json or {JSON_LINES[0]}")
     data = await request.body()
-    text = await run_in_threadpool(_many if many else _one, probe, data)
-    return Response(text, media_type=kind if many else "application/json", headers={"Cache-Control": "no-store"})
+    text, lines = await run_in_threadpool(_many if many else _one, probe, data)
+    media_type = kind if many else JSON_LINES[0] if lines else "application/json"
+    return Response(text, media_type=media_type, headers={"Cache-Control": "no-store"})
 
 
-def _one(probe: Probe[Any], data: bytes) -> str:
+def _one(probe: Probe[Any], data: bytes) -> tuple[str, bool]:
+    """Return the answer to one document, and whether it was none, but lines of them."""
     try:
         value = read_document(data)
     except InvalidJsonError as error:
+        if read_documents(data)[0]:
+            return _many(probe, data)
         raise ProblemError(400, "json", f"The body is not JSON: {_reason(error)}") from None
-    return encode(probe.ask(value))
+    return encode(probe.ask(value)), False
 
 
-def _many(probe: Probe[Any], data: bytes) -> str:
+def _many(probe: Probe[Any], data: bytes) -> tuple[str, bool]:
     documents, bad = read_lines(data)
     count = len(documents) + len(bad)
     if not count:
@@ -114,7 +118,7 @@ def _many(probe: Probe[Any], data: bytes) -> str:
     if count > probe.most_lines:
         raise InputError.at("", f"the body has {count} lines; at most {probe.most_lines} are answered at once")
     try:
-        return "".join(encode(answer) + "\n" for answer in probe.ask_all(documents, bad))
+        return "".join(encode(answer) + "\n" for answer in probe.ask_all(documents, bad)), True
     except UnanswerableError as error:
         raise _problem(error.documents) from None
 

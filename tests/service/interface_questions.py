@@ -56,3 +56,10 @@ def any_question(rng: np.random.Generator, source: int, target: int, absorbing: 
     k = sideways / np.linalg.norm(sideways) * rng.uniform(0, 0.999) * max(question["from"]["indices"])
     question["tangential_k"] = (k - (k @ normal) * normal).tolist()
     return question
+
+
+def activated(rng: np.random.Generator, medium: dict[str, Any]) -> dict[str, Any]:
+    """Return a medium with a gyration that its symmetry allows, on right-handed axes."""
+    first, second, third = (rng.uniform(-1, 1, 3) * 10 ** rng.uniform(-5, -2)).tolist()
+    gyration = {1: [first] * 3, 2: [first, first, second], 3: [first, second, third]}[len(medium["indices"])]
+    return {**medium, "axes": turned(rng).tolist(), "gyration": gyration}

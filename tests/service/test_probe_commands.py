@@ -87,7 +87,7 @@ def test_a_document_may_be_spread_over_lines_and_come_by_stdin(
         ({"from": CALCITE["to"]}, "/wave_normal: is for an isotropic `from`; of an anisotropic one give tangential_k"),
         ({"from": {"indices": [0]}}, "/from/indices/0: input should be greater than or equal to 0.01, not 0"),
         ({"from": {"indices": [-1.5]}}, "/from/indices/0: input should be greater than or equal to 0.01, not -1.5"),
-        ({"from": 1.0}, "/from: "),
+        ({"from": 1.0}, "/from: must be an object, not 1.0"),
         ({"to": {"indices": [1.5, 1.6]}}, "/to/axes: required: the medium is anisotropic"),
         (
             {"to": {"indices": [1.5, 1.6], "axes": [[1, 0, 0], [0, 1, 0], [0, 0.1, 1]]}},

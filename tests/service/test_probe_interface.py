@@ -14,7 +14,7 @@ from crystal_core.errors import InputError, NotSupportedError
 from crystal_core.materials import principal_indices
 from service.probes.interface import INTERFACE, InterfaceAnswer
 from service.probes.probe import encode
-from tests.service.interface_questions import CALCITE, any_question, turned
+from tests.service.interface_questions import CALCITE, activated, any_question, turned
 
 Complex = NDArray[np.complex128]
 
@@ -174,6 +174,60 @@ def test_an_answer_does_not_depend_on_the_others(absorbing: bool) -> None:
         else:
             assert str(alone) == str(answer)
     assert sum(isinstance(answer, InputError) for answer in together) > 5
+
+
+@pytest.mark.parametrize(("source", "target"), KINDS)
+@pytest.mark.parametrize("active", [("from",), ("to",), ("from", "to")])
+def test_active_media_join_too(source: int, target: int, active: tuple[str, ...]) -> None:
+    rng = np.random.default_rng((17, source, target, len(active)))
+    answers = 0
+    for _ in range(40):
+        question = any_question(rng, source, target)
+        question |= {side: activated(rng, question[side]) for side in active}
+        (answer,) = INTERFACE.compute([INTERFACE.request.model_validate(question)])
+        if not isinstance(answer, dict):
+            continue
+        answers += 1
+
+        def h(wave: dict[str, Any], side: str) -> Complex:
+            medium = question[side]  # noqa: B023
+            if "gyration" not in medium:
+                return magnetic(wave)
+            axes, indices = np.array(medium["axes"]), medium["indices"]
+            g = axes.T @ np.diag(medium["gyration"]) @ axes
+            kappa = (0.5 * np.trace(g) * np.eye(3) - g) / (np.mean(indices) if len(indices) == 3 else indices[0])
+            return magnetic(wave) + 1j * kappa @ field(wave)
+
+        normal = np.array(question["normal"])
+        for j, incident in enumerate(answer["incident"]):
+            jump_e, jump_h = field(incident), h(incident, "from")
+            for wave in answer["scattered"]:
+                reflected = wave["kind"] == "reflected"
+                share = complex(*wave["amplitude"][j]) * (1 if reflected else -1)
+                jump_e = jump_e + share * field(wave)
+                jump_h = jump_h + share * h(wave, "from" if reflected else "to")
+            assert np.abs(np.cross(normal, jump_e)).max() < 1e-10
+            assert np.abs(np.cross(normal, jump_h)).max() < 1e-10
+            assert sum(wave["power"][j] for wave in answer["scattered"]) == pytest.approx(1, abs=1e-12)
+        for wave in answer["scattered"]:
+            if ("to" if wave["kind"] == "transmitted" else "from") in active:
+                assert wave["mode"] in {"slow", "fast"}
+    assert answers > 20
+
+
+def test_quartz_turns_light_along_its_axis_to_the_right_or_left() -> None:
+    answer = INTERFACE.ask({**CALCITE, "wave_normal": [0, 0, 1], "to": {"mineral": "quartz"}})
+    into = of_kind(answer, "transmitted")
+    # ρ = π (n_slow − n_fast)/λ: 21.7°/mm at the D line, in every textbook.
+    turn = 180 * (into["slow"]["index"] - into["fast"]["index"]) / 589.3e-6
+    assert turn == pytest.approx(21.7, abs=0.1)
+    for wave in into.values():
+        x, y, z = field(wave)
+        assert abs(z) < 1e-12
+        assert abs(x) == pytest.approx(abs(y), abs=1e-6)
+        assert abs(np.cos(np.angle(x / y))) < 1e-6
+    # Dextro quartz: clockwise to whoever faces the source, so the fast wave is the clockwise one, (1, -i).
+    assert (field(into["fast"])[1] / field(into["fast"])[0]).imag == pytest.approx(-1, abs=1e-6)
 
 
 def test_absorption_is_that_along_the_ray() -> None:

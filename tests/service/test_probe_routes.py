@@ -43,6 +43,14 @@ def test_lines_are_answered_in_order(client: TestClient, probe: str, kind: str) 
     assert [json.loads(line) for line in answer.text.splitlines()] == [PROBES[probe].ask(line) for line in lines]
 
 
+def test_lines_are_known_by_themselves(client: TestClient) -> None:
+    other = {**CALCITE, "to": {"indices": [1.7]}}
+    answer = ask(client, "interface", f"{json.dumps(CALCITE)}\n{json.dumps(other)}".encode())
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "application/jsonl"
+    assert [json.loads(line) for line in answer.text.splitlines()] == [INTERFACE.ask(CALCITE), INTERFACE.ask(other)]
+
+
 @pytest.mark.parametrize(
     ("change", "pointers"),
     [
@@ -81,7 +89,8 @@ def test_wrong_lines_are_told_by_number(client: TestClient) -> None:
         (b"{", "application/json", 400, "json"),
         (b"\xff", "application/json", 400, "json"),
         (b"[" * 60_000, "application/json", 400, "json"),
-        (b"{}\n{}", "application/json", 400, "json"),
+        (b"{}\n{}", "application/json", 422, "input"),
+        (b"{\n}\n}", "application/json", 400, "json"),
         (b"[]", "application/json", 422, "input"),
         (b"", "application/jsonl", 400, "json"),
         (b"{}\n{\n", "application/jsonl", 422, "input"),
@@ -109,7 +118,8 @@ def test_the_description_knows_requests_and_answers(client: TestClient) -> None:
     for probe, model in (("interface", "InterfaceAnswer"), ("plate", "PlateAnswer")):
         post = document["paths"][f"/v1/optics/{probe}"]["post"]
         body = post["requestBody"]["content"]
-        assert set(body) == {"application/json", "application/jsonl", "application/x-ndjson", "application/x-jsonlines"}
+        lines = {"application/jsonl", "application/x-ndjson", "application/ndjson", "application/x-jsonlines"}
+        assert set(body) == {"application/json"} | lines
         schema = body["application/json"]["schema"]
         assert "$ref" not in json.dumps(schema)
         for example in schema["examples"]:
