@@ -32,6 +32,9 @@ __all__ = ["EllipticalMode", "FramedActive"]
 NEAR = 1e-2
 """Distance of a forward and a backward q below which both are computed anew from the space of the two."""
 
+FOREIGN = 1e4
+"""Weight of q_forward − q*_backward, 0 for evanescent partners, beside the distance of both."""
+
 EQUAL = 1e-13
 """Distance of two evanescent q below which any two fields of their common space serve for them."""
 
@@ -158,46 +161,79 @@ def _waves(delta: Complex) -> tuple[Complex, Complex, BoolArray, Real]:
 
 
 def _slanting(delta: Complex, q: Complex, psi: Complex) -> tuple[Complex, Complex, BoolArray, BoolArray, Real]:
-    """Return q, ψ and which waves propagate, those of a nearly coincident forward and backward wave computed anew.
+    """Return q, ψ and which waves propagate, those of nearly coincident forward and backward waves computed anew.
 
     The eigenvectors of such two are good to rounding/(their distance) only. But the space of both is the one that
-    exchanges no energy with the other two waves. In a basis of it with ψ†Kψ = diag(1, −1), K Δ is (a, b; b*, d), and
-    with m = ½ (a + d) and r² = m² − |b|² (r of the sign of m, or positive imaginary)
-
-        q = ½ (a − d) ± r,        ψ_forward = (−(m + r), b*),   ψ_backward = (b, −(m + r)),
-
-    with fluxes ψ†Kψ of ± 2 r (m + r), or none where r is imaginary.
+    exchanges no energy with the other two waves, and there they follow from `_two_ways`.
 
     Also returned, (N, 4): which waves were computed anew, and Re(E × H*)_z of those.
     """
     count = np.arange(q.shape[0])
-    nearest = np.argmin(np.abs(q[:, :2, None] - q[:, None, 2:]).reshape(-1, 4), axis=1)
+    gap = _gap(q[:, :2, None], q[:, None, 2:]).reshape(-1, 4)
+    nearest = np.argmin(gap, axis=1)
     ahead, back = nearest // 2, 2 + nearest % 2
     rest = np.stack((1 - ahead, 5 - back), axis=1)
-    others = np.take_along_axis(psi, rest[:, None, :], axis=2)
-    # ψ†K others = 0: the two directions across K·others.
-    basis = np.linalg.qr(np.stack((others[:, 3], -others[:, 2], -others[:, 1], others[:, 0]), axis=1), mode="complete")[
-        0
-    ][:, :, 2:]
+    free, anew, flux = np.abs(q.imag) <= REAL, np.zeros(q.shape, np.bool_), np.zeros(q.shape)
+    q_of, psi_of = q.copy(), psi.copy()
+    space = _without_exchange(np.take_along_axis(psi, rest[:, None, :], axis=2))
+    # Where the other two nearly coincide as well, they in turn are taken across the space of the first two.
+    rest_too = gap[count, 3 - nearest] < NEAR
+    for places, basis, rays in (
+        (np.stack((ahead, back), axis=1), space, count),
+        (rest, _without_exchange(space), np.flatnonzero(rest_too)),
+    ):
+        pair_q, pair_psi, pair_free, pair_flux = _two_ways(delta[rays], basis[rays])
+        for column, place in enumerate(places[rays].T):
+            q_of[rays, place], psi_of[rays, :, place] = pair_q[:, column], pair_psi[:, :, column]
+            free[rays, place], flux[rays, place], anew[rays, place] = pair_free, pair_flux[:, column], True
+    return np.where(free, q_of.real, q_of), psi_of, free, anew, flux
+
+
+def _gap(ahead: Complex, back: Complex) -> Real:
+    """Return how far two q are apart.
+
+    An evanescent wave belongs to the one of conjugate q, not to a third that comes close at a conical point.
+    """
+    evanescent = (np.abs(ahead.imag) > REAL) | (np.abs(back.imag) > REAL)
+    return np.asarray(np.abs(ahead - back) + np.where(evanescent, FOREIGN, 0.0) * np.abs(ahead - np.conj(back)))
+
+
+def _without_exchange(psi: Complex) -> Complex:
+    """Return an orthonormal basis, (N, 4, 2), of all φ with ψ†K φ = 0 for two ψ, shape (N, 4, 2)."""
+    flipped = np.stack((psi[:, 3], -psi[:, 2], -psi[:, 1], psi[:, 0]), axis=1)
+    return np.asarray(np.linalg.qr(flipped, mode="complete")[0][:, :, 2:], np.complex128)
+
+
+def _two_ways(delta: Complex, basis: Complex) -> tuple[Complex, Complex, BoolArray, Real]:
+    """Return a forward and a backward wave in the space of both, whose basis is given, shape (N, 4, 2).
+
+    In a basis with ψ†Kψ = diag(1, −1), K Δ is (a, b; b*, d). With m = ½ (a + d) and r² = m² − |b|², r of the sign of m
+    or positive imaginary,
+
+        q = ½ (a − d) ± r,        ψ_forward = (−(m + r), b*),   ψ_backward = (b, −(m + r)),
+
+    of fluxes ψ†Kψ = ± 2 r (m + r), or none where r is imaginary.
+
+    Returns
+    -------
+    q (N, 2), ψ (N, 4, 2), whether both propagate (N,), Re(E × H*)_z (N, 2)
+    """
     size, turn = np.linalg.eigh(flux_product(basis, basis))
     basis = (product(basis, turn) / np.sqrt(np.abs(size))[:, None, :])[:, :, ::-1]
     level = flux_product(basis, product(delta, basis))
     a, b, d = level[:, 0, 0].real, level[:, 0, 1], level[:, 1, 1].real
     middle = 0.5 * (a + d)
     square = (middle - np.abs(b)) * (middle + np.abs(b))
-    root = np.where(square >= 0.0, np.copysign(1.0, middle), 1j) * np.sqrt(np.abs(square))
-    forward = np.stack((-(middle + root), np.conj(b)), axis=1)
-    backward = np.stack((b, -(middle + root)), axis=1)
-
-    q, psi, free = q.copy(), psi.copy(), np.abs(q.imag) <= REAL
-    anew, flux = np.zeros(q.shape, np.bool_), np.zeros(q.shape)
-    for which, sign, mixture in ((ahead, 1.0, forward), (back, -1.0, backward)):
-        q[count, which] = 0.5 * (a - d) + sign * root
-        psi[count, :, which] = product(basis, mixture[:, :, None])[:, :, 0]
-        free[count, which] = square >= 0.0
-        flux[count, which] = np.where(square >= 0.0, sign * (root * (middle + root)).real, 0.0)
-        anew[count, which] = True
-    return np.where(free, q.real, q), psi, free, anew, flux
+    free = square >= 0.0
+    root = np.where(free, np.copysign(1.0, middle), 1j) * np.sqrt(np.abs(square))
+    # Two waves that cross without a coupling: the basis has them already.
+    crossing = (middle == 0.0) & (b == 0.0)
+    lead = np.where(crossing, 1.0, middle + root)
+    mixture = np.stack((np.stack((-lead, np.conj(b)), axis=1), np.stack((b, -lead), axis=1)), axis=2)
+    flux = np.where(crossing, 0.5, np.where(free, (root * lead).real, 0.0))
+    centre = 0.5 * (a - d)
+    q = np.stack((centre + root, centre - root), axis=1)
+    return q, product(basis, mixture), free, np.stack((flux, -flux), axis=1)
 
 
 def _shares(psi: Complex, free: BoolArray, near: BoolArray) -> Complex:
@@ -212,7 +248,8 @@ def _shares(psi: Complex, free: BoolArray, near: BoolArray) -> Complex:
     permitted = np.where(one, free[:, :, None], lost[:, :, None] & lost[:, None, :] & ACROSS_SIDES)
     kept = np.where(permitted, gram, 0.0)
     excess = gram - kept
-    done = near[:, :, None] | near[:, None, :]
+    done = near | ~permitted.any(axis=2)
+    done = done[:, :, None] | done[:, None, :]
     kept[done], excess[done] = 0.0, 0.0
     kept[done & one] = 1.0
     shares = 0.5 * np.linalg.solve(kept, excess)

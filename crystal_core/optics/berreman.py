@@ -8,7 +8,10 @@ from crystal_core.optics.arrays import Complex, Field, Real
 from crystal_core.optics.indicatrix import dissipation, permittivity
 from crystal_core.optics.medium import Medium
 
-__all__ = ["activity", "berreman_matrix", "flux_product", "normal_fields", "plate_matrix", "stacked"]
+__all__ = ["activity", "berreman_matrix", "flux_product", "is_active", "normal_fields", "plate_matrix", "stacked"]
+
+NO_GYRATION = 1e-15
+"""Gyration below which a medium counts as inactive."""
 
 
 def berreman_matrix(epsilon: Field, kx: Real, ky: Real, kappa: Real | None = None) -> Field:
@@ -81,6 +84,11 @@ def _normal_fields(
     known = x * hy - y * hx + e[:, 2, 0] * ex + e[:, 2, 1] * ey + c[:, 2, 0] * hx + c[:, 2, 1] * hy
     ez = -(known + c[:, 2, 2] * curl) / (e[:, 2, 2] + c[:, 2, 2] ** 2)
     return ez, curl + c[:, 2, 2] * ez
+
+
+def is_active(medium: Medium) -> bool:
+    """Return whether the medium has a gyration that counts: n² ± G is n² for less than rounding."""
+    return medium.gyration is not None and bool(np.any(np.abs(medium.gyration) > NO_GYRATION))
 
 
 def activity(medium: Medium) -> Real | None:

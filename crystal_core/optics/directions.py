@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from crystal_core.errors import InputError
 from crystal_core.optics.active_directions import EllipticalWave, elliptical_waves
 from crystal_core.optics.arrays import Field, Real, dot
-from crystal_core.optics.berreman import activity, stacked
+from crystal_core.optics.berreman import activity, is_active, stacked
 from crystal_core.optics.frames import transverse_frame
 from crystal_core.optics.indicatrix import BiaxialIndicatrix, permittivity
 from crystal_core.optics.medium import UNIT_TOLERANCE, Medium
@@ -97,7 +97,7 @@ def waves_along(medium: Medium, wave_normal: ArrayLike) -> tuple[PlaneWave, Plan
         Wave normals that are not unit vectors or not of the shape (3, N), or not as many as the medium has indices.
     """
     s = _unit(medium, wave_normal)
-    if medium.gyration is not None and np.any(medium.gyration):
+    if is_active(medium):
         return _active(medium, s)
     if medium.axes is not None:
         return _biaxial(medium, s)

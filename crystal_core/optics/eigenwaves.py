@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from crystal_core.optics.active import FramedActive
+from crystal_core.optics.berreman import is_active
 from crystal_core.optics.biaxial import FramedBiaxial
 from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.frames import InterfaceFrame
@@ -17,7 +16,7 @@ __all__ = ["framed"]
 
 def framed(medium: Medium, frame: InterfaceFrame) -> FramedMedium:
     """Return a medium in the frame of an interface, by its activity and its number of principal indices."""
-    if medium.gyration is not None and np.any(medium.gyration):
+    if is_active(medium):
         return FramedActive(medium, frame)
     kinds: tuple[type[FramedMedium], ...] = (FramedIsotropic, FramedUniaxial, FramedBiaxial)
     return kinds[len(medium.indices) - 1](medium, frame)

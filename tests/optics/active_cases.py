@@ -66,6 +66,7 @@ def material(medium: Medium, count: int) -> tuple[Real, Real]:
         middle = n[0]
     else:
         epsilon = np.einsum("an,ain,ajn->ijn", np.array(n) ** 2, wide, wide)
+        epsilon = 0.5 * (epsilon + epsilon.swapaxes(0, 1))
         middle = (n[0] + n[1] + n[2]) / 3
     if medium.gyration is None:
         return epsilon, np.zeros((3, 3, count))
@@ -99,9 +100,9 @@ class Setup:
     def scatter(self) -> Scattering:
         return scatter(self.normal, self.tangential, self.source, self.target)
 
-    def reversed(self) -> Setup:
-        """The same faces with everything coming back: the source is where it was, light comes from both sides."""
-        return Setup(-self.normal, -self.tangential, self.target, self.source)
+    def from_behind(self) -> Setup:
+        """Return the same faces for light from the other side, of the same tangential wave vector."""
+        return Setup(-self.normal, self.tangential, self.target, self.source)
 
     def take(self, rays: NDArray[np.intp]) -> Setup:
         return Setup(self.normal[:, rays], self.tangential[:, rays], self.source.take(rays), self.target.take(rays))

@@ -79,17 +79,31 @@ def exact_face(
 def _waves(z: mpmath.matrix, kt: mpmath.matrix, medium: tuple[Real, Real]) -> tuple[list[ExactWave], list[ExactWave]]:
     eps, kap = _matrix(medium[0]), _matrix(medium[1])
     sides: tuple[list[ExactWave], list[ExactWave]] = [], []
+    if mpmath.norm(kap) == 0 and mpmath.norm(eps - eps[0, 0] * mpmath.eye(3)) == 0:  # double roots: s and p
+        x = kt / mpmath.norm(kt)
+        root = mpmath.sqrt(eps[0, 0] - mpmath.norm(kt) ** 2)
+        for side, q in zip(sides, (root, -root), strict=True):
+            k = kt + q * z
+            for e in (_cross(z, x), (q * x - mpmath.norm(kt) * z) / mpmath.sqrt(eps[0, 0])):
+                unit = e / mpmath.norm(e)
+                side.append(_wave(q, unit, _curl(list(k)) * unit, z))
+        return sides
     for root in _roots(lambda q: mpmath.det(wave_matrix(list(kt + q * z), eps, kap))):
         free = abs(mpmath.im(root)) < REAL
         q = mpmath.re(root) if free else root
         k = list(kt + q * z)
         e = _null_vector(wave_matrix(k, eps, kap))
         h = (_curl(k) + 1j * kap) * e
-        flux = mpmath.re(mpmath.fdot(z, _cross(e, h.apply(mpmath.conj)))) if free else mpmath.mpf(0)
-        ahead = flux > 0 if free else mpmath.im(q) > 0
-        sides[0 if ahead else 1].append(ExactWave(q, e, h, flux))
+        wave = _wave(q, e, h, z)
+        ahead = wave.flux > 0 if free else mpmath.im(q) > 0
+        sides[0 if ahead else 1].append(wave)
     assert len(sides[0]) == len(sides[1]) == 2
     return sides
+
+
+def _wave(q: mpmath.mpc, e: mpmath.matrix, h: mpmath.matrix, z: mpmath.matrix) -> ExactWave:
+    free = mpmath.im(q) == 0
+    return ExactWave(q, e, h, mpmath.re(mpmath.fdot(z, _cross(e, h.apply(mpmath.conj)))) if free else mpmath.mpf(0))
 
 
 def _roots(quartic: Callable[[mpmath.mpf], mpmath.mpc]) -> list[mpmath.mpc]:
@@ -102,7 +116,16 @@ def _roots(quartic: Callable[[mpmath.mpf], mpmath.mpc]) -> list[mpmath.mpc]:
         companion[i, 3] = -coefficients[i] / coefficients[4]
         if i:
             companion[i, i - 1] = 1
-    return list(mpmath.eig(companion, left=False, right=False))
+    return [_polished(coefficients, root) for root in mpmath.eig(companion, left=False, right=False)]
+
+
+def _polished(coefficients: mpmath.matrix, root: mpmath.mpc) -> mpmath.mpc:
+    """Return a simple root to all digits, by Newton's steps."""
+    for _ in range(4):
+        value = mpmath.fsum(c * root**p for p, c in enumerate(coefficients))
+        slope = mpmath.fsum(p * c * root ** (p - 1) for p, c in enumerate(coefficients) if p)
+        root -= value / slope
+    return root
 
 
 def _null_vector(matrix: mpmath.matrix) -> mpmath.matrix:
