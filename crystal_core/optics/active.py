@@ -81,7 +81,7 @@ class FramedActive(FramedMedium):
         kappa = activity(medium)
         assert kappa is not None
         epsilon, kappa = _in_frame(permittivity(medium), frame), _in_frame(kappa, frame)
-        along = frame.kappa
+        along = frame.kappa.astype(np.float64)
         across = np.zeros(along.shape)
         delta: Complex = np.asarray(berreman_matrix(epsilon, along, across, kappa), np.complex128)
         q, psi, free, flux = _waves(delta)
@@ -91,7 +91,9 @@ class FramedActive(FramedMedium):
         order = np.empty(q.shape, np.intp)
         for first, side in ((0, FORWARD), (2, BACKWARD)):
             order[:, side] = first + np.lexsort((-length[:, side], ~slow[:, side], ~free[:, side]))
-        self._q: Complex = np.take_along_axis(q, order, axis=1)
+        # Solved in double precision; handed out in that of the frame.
+        kind = np.result_type(frame.kappa.dtype, np.complex64)
+        self._q = np.take_along_axis(q, order, axis=1).astype(kind)
         self._slow, free = (np.take_along_axis(values, order, axis=1) for values in (slow, free))
         self._free: BoolArray = free[:, FORWARD] & free[:, BACKWARD]
         # The outermost wave of a side is on the outer sheet; of two evanescent ones the first counts as slow.
@@ -100,7 +102,8 @@ class FramedActive(FramedMedium):
         ez, hz = normal_fields(epsilon, along, across, kappa, psi)
         fields: Complex = np.concatenate((psi, ez[:, None, :], hz[:, None, :]), axis=1, dtype=np.complex128)
         scale = _unit_scale(fields[:, (0, 1, 4), :])
-        self._fields, self._flux = fields * scale[:, None, :], flux * np.abs(scale) ** 2
+        self._fields = (fields * scale[:, None, :]).astype(kind)
+        self._flux = (flux * np.abs(scale) ** 2).astype(frame.kappa.dtype)
 
     def take(self, rays: Rays) -> FramedActive:
         """Return the same for a selection of rays."""
@@ -130,7 +133,7 @@ class FramedActive(FramedMedium):
 
 def _in_frame(tensor: Real, frame: InterfaceFrame) -> Real:
     """Return a symmetric tensor of the world, shape (3, 3) or (3, 3, N), in the frame of each ray, shape (N, 3, 3)."""
-    axes = np.stack((frame.x, frame.y, frame.z))
+    axes = np.stack((frame.x, frame.y, frame.z)).astype(np.float64)
     wide = np.broadcast_to(tensor[:, :, None] if tensor.ndim == 2 else tensor, axes.shape)
     turned = np.einsum("ibn,jbn->nij", np.einsum("ian,abn->ibn", axes, wide), axes)
     return np.asarray(0.5 * (turned + turned.swapaxes(1, 2)))

@@ -18,7 +18,7 @@ from crystal_core.optics.directions import waves_along
 from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.frames import interface_frame
 from crystal_core.optics.indicatrix import BiaxialIndicatrix
-from crystal_core.optics.interface import Scattering, scatter
+from crystal_core.optics.interface import Scattering, scatter, solve_face
 from crystal_core.optics.medium import Medium
 from crystal_core.optics.modes import Mode, Wave
 from tests.optics.active_cases import (
@@ -492,6 +492,32 @@ def test_a_ray_does_not_feel_its_batch(kind: str) -> None:
         np.testing.assert_array_equal(part.q, mode.q[5:15])
         np.testing.assert_array_equal(part.flux(), mode.flux()[5:15])
         np.testing.assert_array_equal(part.names(), mode.names()[5:15])
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_single_precision_keeps_the_bound_of_the_other_media(side: str) -> None:
+    """Roots within 5e-6 and energy within 2e-6, where all waves propagate and none slants more than 0.1."""
+    setup = random_setup(10, "biaxial", "uniaxial", 2000, sized(side, 1e-4), reach=0.5)
+    roots, flows = [], []
+    for precision in (np.float64, np.float32):
+        frame = interface_frame(setup.normal.astype(precision), setup.tangential.astype(precision))
+        here, there = (framed(medium.astype(precision), frame) for medium in (setup.source, setup.target))
+        face = solve_face(here, there, True, True)
+        modes = (*face.incident, *face.reflected, *face.transmitted)
+        roots.append(np.array([mode.q for mode in modes]))
+        flow = [np.abs(face.transmission(0)[i]) ** 2 * face.transmitted[i].flux() for i in (0, 1)]
+        flow += [-(np.abs(face.reflection(i, 0)) ** 2) * face.reflected[i].flux() for i in (0, 1)]
+        flows.append(np.sum(flow, axis=0) / face.incident[0].flux())
+        # Inactive media leave their fields as long as they come.
+        parts = np.array(
+            [[np.zeros(mode.q.shape) if e is None else e for e in (mode.ex, mode.ey, mode.ez)] for mode in modes]
+        )
+        fluxes = np.abs([mode.flux() for mode in modes]) / np.sum(np.abs(parts) ** 2, axis=1)
+        steep = (np.min(fluxes, axis=0) > 0.1) & (np.abs(roots[-1].imag).max(axis=0) == 0)
+    assert roots[1].dtype == np.complex64
+    assert np.count_nonzero(steep) > 500
+    np.testing.assert_allclose(roots[1][:, steep], roots[0][:, steep], rtol=0, atol=5e-6)
+    np.testing.assert_allclose(flows[1][steep], 1.0, rtol=0, atol=2e-6)
 
 
 def _mirrored(medium: Medium) -> Real | None:
