@@ -41,6 +41,15 @@ class Crystal:
             return (self.frame[2],)
         return optic_axes(self.medium()) or None
 
+    def is_near_axis(self, wave: Wave) -> BoolArray:
+        """Return for which rays a wave is less than `CLEAR` from an optic axis, (N,)."""
+        near = np.zeros(wave.k.shape[1], np.bool_)
+        k = wave.k + 1j * wave.k_imag
+        for axis in self.optic_axes() or ():
+            across = np.abs(np.sum(np.cross(k, axis[:, None], axis=0) ** 2, axis=0))
+            near |= across <= CLEAR**2 * np.sum(np.abs(k) ** 2, axis=0)
+        return near
+
     def turned(self, rotation: Real) -> Crystal:
         return replace(self, frame=np.einsum("ij,kj->ki", rotation, self.frame))
 
@@ -80,17 +89,22 @@ class DrawnFace:
         """Return for which rays every mode is known for itself: away from optic axes, off the normal in glass."""
         ok = np.ones(self.tangential.shape[1], np.bool_)
         for crystal, waves in ((self.source, (*s.incident, *s.reflected)), (self.target, s.transmitted)):
-            axes = crystal.optic_axes()
-            if axes is None:
+            if crystal.optic_axes() is None:
                 ok &= np.sum(self.tangential**2, axis=0) > CLEAR**2
                 ok &= len(crystal.indices) == 1
-                continue
             for wave in waves:
-                k = wave.k + 1j * wave.k_imag
-                length = np.sqrt(np.sum(np.abs(k) ** 2, axis=0))
-                for axis in axes:
-                    sin = np.sqrt(np.abs(np.sum(np.cross(k, axis[:, None], axis=0) ** 2, axis=0))) / length
-                    ok &= sin > CLEAR
+                ok &= ~crystal.is_near_axis(wave)
+        return ok
+
+    def sums_are_known(self, s: Scattering) -> BoolArray:
+        """Return for which rays what is summed over modes is known even near an optic axis.
+
+        There both waves of a pair must be. Where the face cuts the cone of rays of a biaxial axis, one of the two waves
+        goes forward and one back, and how the field divides depends on where exactly k lies about the axis.
+        """
+        ok = np.ones(self.tangential.shape[1], np.bool_)
+        for crystal, pair in ((self.source, s.incident), (self.source, s.reflected), (self.target, s.transmitted)):
+            ok &= crystal.is_near_axis(pair[0]) == crystal.is_near_axis(pair[1])
         return ok
 
 

@@ -62,7 +62,8 @@ def _assert_same(face: DrawnFace, ours: Scattering, other: Scattering, bound: fl
         _assert_equal_pairs(one, two, apart, bound, turn)
     _assert_equal_pairs(ours.transmitted, other.transmitted, apart, bound, turn)
     np.testing.assert_allclose(_powers(other)[..., apart], _powers(ours)[..., apart], atol=bound)
-    np.testing.assert_allclose(_totals(other)[:, steep], _totals(ours)[:, steep], atol=bound)
+    summed = steep & face.sums_are_known(ours)
+    np.testing.assert_allclose(_totals(other)[:, summed], _totals(ours)[:, summed], atol=bound)
 
 
 @pytest.mark.parametrize("count", [2000, pytest.param(20_000, marks=pytest.mark.full)])
