@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from crystal_core.errors import InputError
 from crystal_core.optics.arrays import Complex, Field, Real
 from crystal_core.optics.indicatrix import dissipation, permittivity
 from crystal_core.optics.medium import Medium
@@ -96,7 +97,14 @@ def activity(medium: Medium) -> Real | None:
 
     κ = (½ tr g − g)/n for the gyration tensor g and the mean index n (n_o of a uniaxial medium), so that light along
     an optic axis is turned by ρ = π G/(λ n) per length, G = s·g·s: positive ρ (dextro) is clockwise to an observer who
-    faces the source. First order in g, as g itself is defined (Landau & Lifshitz, §104).
+    faces the source. First order in g, as g itself is defined (Landau & Lifshitz, §104). In a crystal G = s·g·s holds
+    to |g| times the relative birefringence along other directions; along an optic axis of a biaxial one the mean index
+    is not n_β, and G comes out n_β/n times as large.
+
+    Raises
+    ------
+    InputError
+        κ as large as an index: the energy of the medium would not be positive.
     """
     g = medium.gyration
     if g is None:
@@ -104,9 +112,14 @@ def activity(medium: Medium) -> Real | None:
     n: Real = medium.indices[0] if len(medium.indices) < 3 else sum(medium.indices[1:], medium.indices[0]) / 3.0
     trace = g[0, 0] + g[1, 1] + g[2, 2]
     if g.ndim == 2 and np.ndim(n) == 0:
-        return np.asarray((0.5 * trace * np.eye(3) - g) / n)
-    wide = g if g.ndim == 3 else g[:, :, None]
-    return np.asarray((0.5 * trace * np.eye(3)[:, :, None] - wide) / n)
+        kappa = np.asarray((0.5 * trace * np.eye(3) - g) / n)
+    else:
+        wide = g if g.ndim == 3 else g[:, :, None]
+        kappa = np.asarray((0.5 * trace * np.eye(3)[:, :, None] - wide) / n)
+    size = np.sqrt(np.sum(kappa * kappa, axis=(0, 1)))
+    if any(np.any(size >= index) for index in medium.indices):
+        raise InputError.at("/gyration", "the gyration is too large: optical activity would outweigh the indices")
+    return kappa
 
 
 def plate_matrix(medium: Medium, wavelength_nm: Real, kx: Real, ky: Real) -> Field:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import minerals_db
+from crystal_core.errors import InputError
 from crystal_core.materials import medium as medium_of
 from crystal_core.optics import directions
 from crystal_core.optics.arrays import Field, Real
@@ -234,3 +235,14 @@ def test_where_nothing_tells_the_waves_apart_any_pair_serves() -> None:
     assert slow.index[1] == pytest.approx(1.5443, abs=1e-15)
     assert fast.index[1] == pytest.approx(1.5443, abs=1e-15)
     assert abs(np.vdot(slow.e[:, 1], fast.e[:, 1])) < 1e-15
+
+
+def test_a_gyration_beyond_the_indices_is_refused() -> None:
+    """D·E + B·H would not be positive: there is no such medium."""
+    for medium in (
+        Medium.isotropic(1.1),
+        Medium.uniaxial(1.5, 1.1, Z[:, 0]),
+        Medium.biaxial((1.1, 1.5, 1.6), np.eye(3)),
+    ):
+        with pytest.raises(InputError, match=r"^/gyration: the gyration is too large"):
+            waves_along(medium.active(np.diag((1.5, -1.5, 1.5))), Z)
