@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from crystal_core.errors import InputError, NotSupportedError
 from crystal_core.optics.arrays import Real
+from crystal_core.optics.berreman import is_active
 from crystal_core.optics.directions import waves_along
 from crystal_core.optics.indicatrix import BiaxialIndicatrix, optical_class, principal_frame
 from crystal_core.optics.medium import Medium
@@ -24,6 +25,10 @@ from crystal_core.optics.medium import Medium
 __all__ = ["SurfaceKind", "SurfaceMesh", "WaveSurface", "dual", "wave_surface"]
 
 SurfaceKind = Literal["index", "ray"]
+
+TOUCHING = 1e-13
+"""Difference of two indices below which the sheets of an active medium touch."""
+
 Index = NDArray[np.intp]
 
 
@@ -64,7 +69,7 @@ class WaveSurface:
     contact_points : Real
         Where the sheets touch, shape (3, M), each a vertex of both: four points of a biaxial medium, on its optic axes
         (index surface) or biradials (ray surface); the two poles of a uniaxial one; none (M = 0) of an isotropic one,
-        whose sheets coincide.
+        whose sheets coincide, and of an optically active one, whose sheets stay apart by G/n there.
     """
 
     kind: SurfaceKind
@@ -92,15 +97,23 @@ def wave_surface(medium: Medium, kind: SurfaceKind = "index", resolution: int = 
     InputError
         A medium of more than one wavelength, an unknown kind, a resolution below 2.
     NotSupportedError
-        The medium is optically active.
+        The ray surface of an optically active medium: the two surfaces are no duals there.
     """
     _check(medium, kind, resolution)
+    active = is_active(medium)
+    if active and kind == "ray":
+        raise NotSupportedError("ray surfaces of optically active media (with a gyration tensor) are not drawn")
     along = medium if kind == "index" else dual(medium)
     grid = _grid(along, resolution)
     slow, fast = sorted(waves_along(along, grid.directions), key=lambda wave: float(np.sum(wave.index)), reverse=True)
     lengths = np.stack((slow.index, fast.index))
-    # At a contact both are the middle one of the principal indices, whatever the rounding of the two formulas.
-    lengths[:, grid.contacts] = np.sort(principal_frame(along)[0])[1]
+    contacts = grid.contacts
+    if active:
+        # The index of a circular wave is n ± G/2n. Where an axis has no gyration the sheets still touch.
+        contacts = contacts[np.abs(lengths[0, contacts] - lengths[1, contacts]) <= TOUCHING]
+    else:
+        # At a contact both are the middle one of the principal indices, whatever the rounding of the two formulas.
+        lengths[:, contacts] = np.sort(principal_frame(along)[0])[1]
     outer, inner = lengths[:, None, :] * grid.directions
     modes = [str(wave.mode[0]) for wave in (slow, fast)]
     if kind == "ray":
@@ -110,7 +123,7 @@ def wave_surface(medium: Medium, kind: SurfaceKind = "index", resolution: int = 
         kind,
         SurfaceMesh(modes[0], outer, grid.triangles),
         SurfaceMesh(modes[1], inner, grid.triangles),
-        outer[:, grid.contacts].copy(),
+        outer[:, contacts].copy(),
     )
 
 
@@ -210,7 +223,6 @@ def _check(medium: Medium, kind: str, resolution: int) -> None:
     several = any(n.ndim for n in medium.indices)
     several |= medium.axis is not None and medium.axis.ndim > 1
     several |= medium.axes is not None and medium.axes.ndim > 2
-    if medium.gyration is not None and np.any(medium.gyration):
-        raise NotSupportedError("wave surfaces of optically active media (with a gyration tensor) are not drawn")
+    several |= medium.gyration is not None and medium.gyration.ndim > 2
     if several:
         raise InputError.at("", "a wave surface belongs to one medium at one wavelength")

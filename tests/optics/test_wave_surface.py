@@ -226,10 +226,37 @@ def test_wrong_input_is_named(medium: Medium, kind: SurfaceKind, resolution: int
     assert [fault.pointer for fault in caught.value.faults] == [pointer]
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_an_active_medium_is_refused_by_name(kind: SurfaceKind) -> None:
+def test_the_ray_surface_of_an_active_medium_is_refused_by_name() -> None:
     with pytest.raises(NotSupportedError, match="gyration"):
-        wave_surface(MEDIA["calcite"].active(np.eye(3) * 1e-4), kind)
+        wave_surface(MEDIA["calcite"].active(np.eye(3) * 1e-4), "ray")
+
+
+def test_the_sheets_of_an_active_medium_stay_apart() -> None:
+    """By G/n along the optic axes, where those of the inactive one touch; and they are its waves."""
+    for name in ("calcite", "aragonite"):
+        inactive = MEDIA[name]
+        surface = wave_surface(inactive.active(1e-4 * np.eye(3)), "index")
+        plain = wave_surface(inactive, "index")
+        assert surface.contact_points.shape == (3, 0)
+        assert (surface.outer.mode, surface.inner.mode) == ("slow", "fast")
+        outer, inner = (np.linalg.norm(mesh.vertices, axis=0) for mesh in (surface.outer, surface.inner))
+        gap = outer - inner
+        mean = sum(float(n) for n in inactive.indices) / 3 if name == "aragonite" else float(inactive.indices[0])
+        assert gap.min() == pytest.approx(1e-4 / mean, rel=0.03)
+        np.testing.assert_array_equal(surface.outer.triangles, plain.outer.triangles)
+        for mesh, wave in zip(
+            (surface.outer, surface.inner),
+            waves_along(inactive.active(1e-4 * np.eye(3)), surface.outer.vertices / outer),
+            strict=True,
+        ):
+            np.testing.assert_allclose(mesh.vertices, wave.k, rtol=0, atol=1e-14)
+        assert np.abs(surface.outer.vertices - plain.outer.vertices).max() < 5e-5
+
+
+def test_without_gyration_along_the_axis_the_sheets_touch() -> None:
+    """Only G along the axis parts them."""
+    along = Medium.uniaxial(1.6584, 1.4864, (0, 0, 1)).active(np.diag((1e-4, 1e-4, 0.0)))
+    assert wave_surface(along, "index").contact_points.shape == (3, 2)
 
 
 @pytest.mark.parametrize("kind", KINDS)
