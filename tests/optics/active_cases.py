@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crystal_core.optics.arrays import BoolArray, Complex, Real
+from crystal_core.optics.arrays import BoolArray, Complex, Field, Real
 from crystal_core.optics.directions import PlaneWave
 from crystal_core.optics.interface import Scattering, scatter
 from crystal_core.optics.medium import Medium
@@ -15,17 +16,31 @@ from crystal_core.optics.modes import Wave
 
 __all__ = [
     "KINDS",
+    "NORMAL",
+    "PAIRS",
+    "SIDES",
+    "SIZES",
     "Setup",
+    "conserved",
     "frames",
+    "full_k",
+    "jump",
     "magnetic",
     "material",
     "maxwell_error",
+    "poynting",
     "random_medium",
     "random_setup",
+    "sized",
     "units",
+    "waves_of",
 ]
 
 KINDS = ("isotropic", "uniaxial", "biaxial")
+PAIRS = list(itertools.product(KINDS, KINDS))
+SIDES = {"from active": (1, None), "into active": (None, 1), "both active": (1, 1)}
+SIZES = (0.1, 1e-3, 1e-5, 1e-8, 1e-12)
+NORMAL = np.array((0.0, 0.0, 1.0))
 
 
 def units(rng: np.random.Generator, count: int) -> Real:
@@ -131,11 +146,28 @@ def conserved(result: Scattering, mode: int) -> Real:
     return np.asarray(sum((power[mode][free] for power in parts), np.zeros(int(free.sum()))))
 
 
-def same_up_to_phase(a: Complex | Real, b: Complex | Real) -> Real:
-    """Return 1 − |a*·b| of unit vectors."""
-    return np.asarray(1.0 - np.abs(np.sum(np.conj(a) * b, axis=0)))
-
-
 def poynting(medium: Medium, wave: PlaneWave) -> Real:
     flow = np.cross(wave.e, np.conj(magnetic(medium, wave.k, wave.e)), axis=0).real
     return np.asarray(flow / np.linalg.norm(flow, axis=0))
+
+
+def sized(side: str, size: float) -> tuple[float | None, float | None]:
+    first, second = SIDES[side]
+    return (None if first is None else size), (None if second is None else size)
+
+
+def jump(setup: Setup, result: Scattering, mode: int) -> float:
+    """Return the largest jump of tangential E or H over the faces, for one incident wave of unit E."""
+    free = result.incident[mode].propagating
+    total = np.zeros((2, 3, free.size), np.complex128)
+    waves: list[tuple[Wave, Field, Medium]] = [(result.incident[mode], np.ones(free.size), setup.source)]
+    waves += [(result.reflected[i], result.amplitude_reflected[i][mode], setup.source) for i in (0, 1)]
+    waves += [(result.transmitted[i], -result.amplitude_transmitted[i][mode], setup.target) for i in (0, 1)]
+    for wave, amplitude, medium in waves:
+        total += amplitude * np.stack((wave.field, magnetic(medium, full_k(wave), wave.field)))
+    total -= setup.normal * np.sum(total * setup.normal, axis=1, keepdims=True)
+    return float(np.abs(total[:, :, free]).max())
+
+
+def waves_of(result: Scattering) -> list[Wave]:
+    return [*result.incident, *result.reflected, *result.transmitted]
