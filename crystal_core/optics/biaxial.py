@@ -3,9 +3,9 @@
 Which wave is which follows from how a line meets the index surface, two closed sheets, one within the other. Of four
 real roots q₁ ≥ q₂ ≥ q₃ ≥ q₄ the outermost are on the outer (slow) sheet, and energy goes along +normal at q₁, along
 −normal at q₄. The inner two are on the fast sheet, q₂ forward and q₃ backward, unless the line passes through the
-dimple at an optic axis and meets the outer sheet four times: then the directions alternate, q₂ is backward, q₃ forward
-(*inhibited reflection*: both waves of a side are slow). Two real roots are on the outer sheet. Of a complex pair the
-root with Im q > 0 decays along +normal.
+dimple at an optic axis and meets the outer sheet four times: then all four waves are slow, the directions alternate, q₂
+is backward and q₃ forward. Two real roots are on the outer sheet, the other two waves are evanescent. Of a complex pair
+the root with Im q > 0 decays along +normal.
 
 Fields follow from the optic axes o₁, o₂: D of the fast wave bisects the directions u_i ∥ k × o_i, D ∥ u₁ + u₂, that of
 the slow wave is at right angles to it (Born & Wolf, Principles of Optics, 7th ed., §15.3.3), and
@@ -15,8 +15,6 @@ the slow wave is at right angles to it (Born & Wolf, Principles of Optics, 7th e
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from crystal_core.optics.arrays import BoolArray, Complex, Field, Rays, Real
@@ -24,7 +22,8 @@ from crystal_core.optics.framed import FramedMedium
 from crystal_core.optics.frames import InterfaceFrame
 from crystal_core.optics.indicatrix import BiaxialIndicatrix
 from crystal_core.optics.medium import Medium
-from crystal_core.optics.modes import Mode, bilinear
+from crystal_core.optics.modes import Mode
+from crystal_core.optics.orthogonality import balance, orthogonalize
 from crystal_core.optics.sheets import Sheets
 
 __all__ = ["FramedBiaxial"]
@@ -38,20 +37,17 @@ MORE_STEPS = 3
 CLOSE = 2.5
 """Relative distance of two roots, over ⁴√ of rounding, below which the quartic cannot tell real from complex."""
 
+CROWDED = 1e-5
+"""Relative distance of a forward and a backward root below which their waves are told apart by rounding."""
+
 NEAR_AXIS = 8.0
 """Angle to an optic axis, over ⁴√ of rounding (1e-3), below which a start from the axis is worth more."""
-
-ONE_FRAME = 80.0
-"""The same (1e-2) for making the two waves orthogonal to rounding: each is uncertain by rounding/θ."""
 
 ON_AXIS = 45.0
 """Angle, in units of rounding, below which a wave travels along an optic axis and any direction across it serves."""
 
-SLANTING = 0.1
-"""|g(ψ, ψ)|/|E|² below which a wave is made orthogonal to its neighbours."""
-
-LARGEST_SHARE = 1e-2
-"""Largest share of a wave in another that is taken for rounding."""
+ONE_FRAME = 80.0
+"""Angle to an optic axis, over ⁴√ of rounding (1e-2), below which the two waves are made orthogonal to rounding."""
 
 SLOW, FAST = -1.0, 1.0
 
@@ -125,6 +121,16 @@ class FramedBiaxial(FramedMedium):
         """Return whether mode 0 and mode 1 propagate, shape (N,) each."""
         return self._free
 
+    def crowded(self) -> BoolArray:
+        """Return where a forward and a backward wave all but coincide, shape (N,)."""
+        ahead, back = (
+            [q if decay is None else q + 1j * sign * decay for q, decay in zip(roots, self._decay, strict=True)]
+            for roots, sign in ((self._forward, 1.0), (self._backward, -1.0))
+        )
+        gaps = [np.abs(ahead[i] - back[j]) for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))]
+        least = np.minimum(np.minimum(gaps[0], gaps[1]), np.minimum(gaps[2], gaps[3]))
+        return np.asarray(least < CROWDED * self.frame.kappa)
+
     def pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
         """Return the waves along sign·normal, as `FramedMedium.pair` says."""
         forward = sign > 0
@@ -136,13 +142,15 @@ class FramedBiaxial(FramedMedium):
         else:
             (q0, branch0), (q1, branch1) = self._complex(slow, fast, second, forward)
             modes = self._mode(q0, branch0, branch0 == SLOW), self._mode(q1, branch1, branch1 == SLOW)
-        self._make_orthogonal(modes)
+        q = modes[0].q.real
+        limit = (ONE_FRAME * _fourth_root(q)) ** 2 * (self.frame.kappa**2 + q * q)
+        orthogonalize(modes, np.flatnonzero((self._sheets.nearest(q) < limit) & self._free[1]))
         return modes
 
     def both_pairs(self, evanescent: bool) -> tuple[tuple[Mode, Mode], tuple[Mode, Mode]]:
         """Return the pairs of `pair` for +1 and for −1, orthogonal to each other to rounding."""
         ahead, back = self.pair(+1, evanescent), self.pair(-1, evanescent)
-        _balance((*ahead, *back))
+        balance((*ahead, *back))
         return ahead, back
 
     def _refined(self, forward: bool) -> tuple[Real, Real]:
@@ -248,25 +256,6 @@ class FramedBiaxial(FramedMedium):
         a, b, c = (np.where(on_axis, value, v) for value, v in zip((0.0, 1.0, 0.0), across, strict=True))
         return a, b, c
 
-    def _make_orthogonal(self, modes: tuple[Mode, Mode]) -> None:
-        """Take from mode 1 what it has of mode 0, near an optic axis; g(ψ₀, ψ₁) = 0 holds for the exact waves.
-
-        Each wave near an axis is uncertain by rounding/θ, but within the plane of both: what is summed over the pair
-        keeps all digits if the two are orthogonal.
-        """
-        first, second = modes
-        q = first.q.real
-        limit = (ONE_FRAME * _fourth_root(q)) ** 2 * (self.frame.kappa**2 + q * q)
-        rays = np.flatnonzero((self._sheets.nearest(q) < limit) & self._free[1])
-        if not rays.size:
-            return
-        a, b = _selected(first, rays), _selected(second, rays)
-        norm = a.norm()
-        grazing = np.abs(norm) <= np.sqrt(np.finfo(q.dtype).eps) * _square_of_field(a)
-        share = np.where(grazing, 0.0, bilinear(a, b)) / np.where(grazing, 1.0, norm)
-        for values, change in zip(_components(second), _components(a), strict=True):
-            values[rays] -= share * change
-
 
 def _real_roots(sheets: Sheets, centre: Real, square: Real) -> tuple[BoolArray, tuple[Real, Real]]:
     """Return where a factor has real roots, and them, the larger first; elsewhere centre ± √|square|.
@@ -285,59 +274,6 @@ def _real_roots(sheets: Sheets, centre: Real, square: Real) -> tuple[BoolArray, 
         for root, better in zip(roots, (np.maximum(slow, fast), np.minimum(slow, fast)), strict=True):
             root[rays] = np.where(sure, better, root[rays])
     return real, roots
-
-
-def _balance(modes: tuple[Mode, Mode, Mode, Mode]) -> None:
-    """Make waves orthogonal that slant so much that their roots have lost digits.
-
-    A wave of flux f has its root within rounding/f, and a share of the other waves in it of the same order, by which
-    energy would be off. Half of it is taken from either (Löwdin's symmetric step), which leaves the square of it.
-    """
-    norms = [np.abs(mode.norm()) for mode in modes]
-    slants = [norm < SLANTING * _square_of_field(mode) for norm, mode in zip(norms, modes, strict=True)]
-    rays = np.flatnonzero(slants[0] | slants[1] | slants[2] | slants[3])
-    if not rays.size:
-        return
-    parts = [_selected(mode, rays) for mode in modes]
-    own = [part.norm() for part in parts]
-    steps: list[list[Field]] = [[np.zeros_like(value) for value in _components(part)] for part in parts]
-    for i, j in itertools.permutations(range(4), 2):
-        overlap = 0.5 * bilinear(parts[i], parts[j])
-        # Two waves that all but coincide (exactly grazing) are no pair to be told apart.
-        small = np.abs(overlap) <= LARGEST_SHARE * np.minimum(np.abs(own[i]), np.abs(own[j]))
-        share = np.where(small, overlap, 0.0) / np.where(small & (own[j] != 0.0), own[j], 1.0)
-        steps[i] = [step + share * value for step, value in zip(steps[i], _components(parts[j]), strict=True)]
-    for mode, changes in zip(modes, steps, strict=True):
-        for values, change in zip(_components(mode), changes, strict=True):
-            values[rays] -= change
-
-
-def _components(mode: Mode) -> list[Field]:
-    return [v for v in (mode.ex, mode.ey, mode.ez, mode.hx, mode.hy, mode.hz) if v is not None]
-
-
-def _selected(mode: Mode, rays: Rays) -> Mode:
-    def part(values: Field | None) -> Field | None:
-        return None if values is None else values[rays]
-
-    return Mode(
-        mode.q[rays],
-        part(mode.ex),
-        part(mode.ey),
-        part(mode.ez),
-        part(mode.hx),
-        part(mode.hy),
-        None,
-        mode.name,
-        part(mode.hz),
-    )
-
-
-def _square_of_field(mode: Mode) -> Real:
-    total = np.zeros_like(mode.q.real)
-    for component in _components(mode)[:3]:
-        total = total + np.abs(component) ** 2
-    return total
 
 
 def _fourth_root(values: Real) -> float:

@@ -43,6 +43,10 @@ class FramedMedium(ABC):
         A wave exactly at its limit (no flux along the normal) counts as propagating.
         """
 
+    def crowded(self) -> BoolArray:
+        """Return where a forward and a backward wave all but coincide without slanting, shape (N,)."""
+        return np.zeros(self.frame.kappa.shape, np.bool_)
+
     @abstractmethod
     def pair(self, sign: int, evanescent: bool) -> tuple[Mode, Mode]:
         """Return the two waves whose energy goes along sign·normal (evanescent ones: that decay along it).

@@ -16,8 +16,10 @@ grazing g(ψ₁⁻_i, ψ₁⁻_i) vanishes; such rays are solved by the plain 4�
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,6 +40,9 @@ GRAZING = 1e-9
 
 SINGULAR = 1e-13
 """Determinant of unit columns, and share of the largest singular value, below which they count as dependent."""
+
+SLANTING = 1e-5
+"""|g(ψ, ψ)|/|E|² of a wave of a crystal below which its closed form has lost digits that energy needs."""
 
 ALL = slice(None)
 
@@ -165,6 +170,34 @@ class Scattering:
     power_reflected: list[list[Real]]
     power_transmitted: list[list[Real]]
 
+    def replace(self, rays: NDArray[np.intp], other: Scattering) -> None:
+        """Put another answer in place of that of some rays; modes are matched by their wave vectors, names stay."""
+        swaps = []
+        for own, new in (
+            (self.incident, other.incident),
+            (self.reflected, other.reflected),
+            (self.transmitted, other.transmitted),
+        ):
+            k = [wave.k[:, rays] + 1j * wave.k_imag[:, rays] for wave in own]
+            apart = [[np.sum(np.abs(a - (w.k + 1j * w.k_imag)), axis=0) for w in new] for a in k]
+            swap = apart[0][1] + apart[1][0] < apart[0][0] + apart[1][1]
+            swaps.append(swap)
+            for place, wave in enumerate(own):
+                for name in ("k", "k_imag", "field", "ray", "index", "propagating", "flux"):
+                    values = getattr(wave, name)
+                    chosen = np.where(swap, getattr(new[1 - place], name), getattr(new[place], name))
+                    values[..., rays] = chosen
+        tables: Sequence[tuple[list[list[Any]], list[list[Any]], BoolArray]] = (
+            (self.amplitude_reflected, other.amplitude_reflected, swaps[1]),
+            (self.amplitude_transmitted, other.amplitude_transmitted, swaps[2]),
+            (self.power_reflected, other.power_reflected, swaps[1]),
+            (self.power_transmitted, other.power_transmitted, swaps[2]),
+        )
+        for mine, theirs, out in tables:
+            for i, j in itertools.product((0, 1), (0, 1)):
+                column = [np.where(swaps[0], theirs[row][1 - j], theirs[row][j]) for row in (0, 1)]
+                mine[i][j] = _replaced(mine[i][j], rays, np.where(out, column[1 - i], column[i]))
+
 
 def scatter(normal: ArrayLike, tangential_k: ArrayLike, source: Medium, target: Medium) -> Scattering:
     """Return the waves, amplitudes and powers at the plane face between two media.
@@ -191,17 +224,43 @@ def scatter(normal: ArrayLike, tangential_k: ArrayLike, source: Medium, target: 
     z, kt = _checked(normal, tangential_k)
     frame = interface_frame(z, kt)
     here, there = framed(source, frame), framed(target, frame)
+    result, slant = _scattering(frame, here, there)
+    rays = np.flatnonzero((slant < SLANTING) | here.crowded() | there.crowded())
+    if rays.size:
+        part = frame.take(rays)
+        again, _ = _scattering(part, _steady(here.take(rays)), _steady(there.take(rays)))
+        result.replace(rays, again)
+    return result
+
+
+def _steady(medium: FramedMedium) -> FramedMedium:
+    """Return the same medium with waves that keep their energy to rounding however much they slant.
+
+    The closed forms know a wave that all but grazes within rounding over its flux, and its reversal apart from it. As
+    an active medium without activity the two are found together, from the space they share.
+    """
+    if medium.medium.is_isotropic or isinstance(medium, FramedActive):
+        return medium
+    return FramedActive(medium.medium.active(np.zeros((3, 3))), medium.frame)
+
+
+def _scattering(frame: InterfaceFrame, here: FramedMedium, there: FramedMedium) -> tuple[Scattering, Real]:
+    """Return the answer of `scatter`, and the least |g(ψ, ψ)|/|E|² of the waves of anisotropic media, shape (N,)."""
     incoming, outgoing = here.propagating(), there.propagating()
     face = solve_face(here, there, not (incoming[0] & incoming[1]).all(), not (outgoing[0] & outgoing[1]).all())
 
-    sides = ((face.incident, incoming), (face.reflected, incoming), (face.transmitted, outgoing))
+    slant = np.full(frame.kappa.shape, np.inf)
+    sides = ((face.incident, incoming, here), (face.reflected, incoming, here), (face.transmitted, outgoing, there))
     scale: list[list[Real]] = []
     waves: list[tuple[Wave, Wave]] = []
-    for modes, free in sides:
+    for modes, free, medium in sides:
         lengths = [_field_length(mode) for mode in modes]
         first, second = (_wave(mode, length, frame, ok) for mode, length, ok in zip(modes, lengths, free, strict=True))
         waves.append((first, second))
         scale.append(lengths)
+        if not medium.medium.is_isotropic and not isinstance(medium, FramedActive):
+            for mode, length in zip(modes, lengths, strict=True):
+                slant = np.minimum(slant, np.abs(mode.norm()) / length**2)
 
     t, r = _amplitudes(face, scale)
     for j in (0, 1):
@@ -209,9 +268,8 @@ def scatter(normal: ArrayLike, tangential_k: ArrayLike, source: Medium, target: 
             for amplitude in (t, r):
                 for i in (0, 1):
                     amplitude[i][j] = np.where(incoming[j], amplitude[i][j], np.nan)
-    return Scattering(
-        waves[0], waves[1], waves[2], r, t, _powers(r, waves[1], waves[0], True), _powers(t, waves[2], waves[0], False)
-    )
+    powers = _powers(r, waves[1], waves[0], True), _powers(t, waves[2], waves[0], False)
+    return Scattering(waves[0], waves[1], waves[2], r, t, *powers), slant
 
 
 def _amplitudes(face: Face, scale: list[list[Real]]) -> tuple[Amplitudes, Amplitudes]:
@@ -288,11 +346,11 @@ def _wave(mode: Mode, length: Real, frame: InterfaceFrame, free: BoolArray) -> W
     return Wave(
         mode=mode.names(),
         k=k,
-        k_imag=frame.z * (np.imag(mode.q) + zero),
+        k_imag=frame.z * np.where(free, 0.0, np.imag(mode.q)),
         field=frame.world(ex, ey, ez).astype(np.complex128),
         ray=ray,
         index=np.where(free, np.sqrt(dot(k, k)), np.nan),
-        propagating=free,
+        propagating=free.copy(),
         flux=np.where(free, mode.flux() / length**2, 0.0),
     )
 

@@ -28,6 +28,9 @@ MIRROR = np.eye(4) - 2.0 * np.outer(_ACROSS, _ACROSS) / 11.0
 """A reflection in no special plane. LAPACK balances a matrix before it looks for eigenvalues; entries that are but
 rounding, as there are where a crystal stands straight, mislead it to scales that cost half the digits."""
 
+ONE_Q = 1e-7
+"""Distance of two q below which their fields are told apart by rounding."""
+
 SERIES = 1e-4
 """|x| below which (sin x)/x is summed as a series."""
 
@@ -87,7 +90,11 @@ def split(delta: Field) -> Split:
     q, psi = q.astype(np.complex128), np.einsum("ij,njk->nik", MIRROR, psi.astype(np.complex128))
     flux = 2.0 * (psi[:, 0] * np.conj(psi[:, 3]) - psi[:, 1] * np.conj(psi[:, 2])).real
     order = np.argsort(-(flux + q.imag), axis=1, kind="stable")
-    q = np.take_along_axis(q, order, axis=1)
+    q, way = np.take_along_axis(q, order, axis=1), np.take_along_axis(flux + q.imag, order, axis=1)
+    # Of two waves with one q, one each way, any two fields of their space may come out, with fluxes of one sign.
+    one_q = np.abs(q[:, ::2] - q[:, 1::2]) < ONE_Q
+    mixed = (one_q[:, 0] & (way[:, 2] > 0.0)) | (one_q[:, 1] & (way[:, 1] < 0.0))
+    q[mixed], order[mixed] = q[mixed][:, [0, 2, 1, 3]], order[mixed][:, [0, 2, 1, 3]]
     psi = np.take_along_axis(psi, order[:, None, :], axis=2)
     forward = Pair(q[:, :2], psi[:, :, :2], _space(delta, q[:, 2:]))
     backward = Pair(q[:, 2:], psi[:, :, 2:], _space(delta, q[:, :2]))

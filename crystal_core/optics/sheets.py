@@ -120,8 +120,13 @@ class Sheets:
             (p0 * p0 - w * h1 * h2) / lead,
         )
 
+    def curvature(self) -> Real:
+        """Return d²P/dq²; that of F is the same to the order of the birefringence."""
+        (_, _, z1), (_, _, z2) = self.axes
+        return np.asarray(2.0 * (self.mean + self.half * z1 * z2))
+
     def refined(self, q: Real, branch: Real | float, steps: int) -> Real:
-        """Return real roots after some steps of Newton's method on F = P + branch·W; −1 is slow, +1 fast."""
+        """Return real roots after some steps towards F = P + branch·W = 0; −1 is slow, +1 fast."""
         weight = branch * self.half
         for _ in range(steps):
             p, dp = self.smooth(q)
@@ -129,15 +134,14 @@ class Sheets:
             second, d_second = self.square(1, q)
             w = np.sqrt(first * second)
             slope = dp + weight * (d_first * second + first * d_second) / (2.0 * np.maximum(w, np.finfo(w.dtype).tiny))
-            # At a grazing wave F touches zero: q is then as good as it gets.
-            q = q - np.where(slope != 0.0, p + weight * w, 0.0) / np.where(slope != 0.0, slope, 1.0)
+            q = q - _real_step(np.asarray((p + weight * w).real), np.asarray(slope.real), self.curvature())
         return np.asarray(q)
 
     def split(self, centre: Field) -> tuple[Field, Field, BoolArray]:
         """Return the slow and the fast root near a point where the sheets are close, and if both surely are real.
 
-        With P linear and W constant they are q − (P ∓ W)/P′. Where |P′| exceeds every possible |W′|, F rises or falls
-        on either sheet, each has one real root, and no rounding of the quartic can make them complex.
+        With W constant they solve P ∓ W = 0. Where |P′| exceeds every possible |W′|, F rises or falls on either sheet,
+        each has one real root, and no rounding of the quartic can make them complex.
         """
         p, dp = self.smooth(centre)
         first, second = self.square(0, centre)[0], self.square(1, centre)[0]
@@ -146,8 +150,11 @@ class Sheets:
         # |d|k × o|/dq| is at most the part of o across z.
         steepest = np.sqrt((x1 * x1 + y1 * y1) * np.abs(second)) + np.sqrt((x2 * x2 + y2 * y2) * np.abs(first))
         sure = np.abs(dp) > 1.1 * self.half * steepest + np.finfo(steepest.dtype).tiny
-        safe = np.where(dp != 0.0, dp, 1.0)
-        return centre - (p - w) / safe, centre - (p + w) / safe, sure
+        bend = self.curvature()
+        if np.iscomplexobj(centre):
+            return centre - _complex_step(p - w, dp, bend), centre - _complex_step(p + w, dp, bend), sure
+        slow, fast = (_real_step(np.asarray((p + sign * w).real), np.asarray(dp.real), bend) for sign in (-1.0, 1.0))
+        return np.asarray(centre.real - slow), np.asarray(centre.real - fast), sure
 
     def branch(self, q: Complex) -> Real:
         """Return the branch of a complex root: −1 if P is W of the principal roots √Q₁·√Q₂, +1 if it is −W."""
@@ -156,7 +163,7 @@ class Sheets:
         return np.where(np.abs(p + w) < np.abs(p - w), 1.0, -1.0)
 
     def refined_complex(self, q: Complex, branch: Real, steps: int) -> Complex:
-        """Return complex roots after some steps of Newton's method on F = P + branch·√Q₁·√Q₂."""
+        """Return complex roots after some steps towards F = P + branch·√Q₁·√Q₂ = 0."""
         for _ in range(steps):
             p, dp = self.smooth(q)
             first, d_first = self.square(0, q)
@@ -164,7 +171,7 @@ class Sheets:
             w = np.sqrt(first) * np.sqrt(second)
             flat = w == 0.0
             slope = dp + branch * self.half * (d_first * second + first * d_second) / np.where(flat, 1.0, 2.0 * w)
-            q = q - np.where(slope != 0.0, p + branch * self.half * w, 0.0) / np.where(slope != 0.0, slope, 1.0)
+            q = q - _complex_step(p + branch * self.half * w, slope, self.curvature())
         return np.asarray(q, np.result_type(q, np.complex64))
 
     def near_axis(self, q: Real) -> tuple[Real, Real]:
@@ -191,3 +198,22 @@ class Sheets:
         one, two = (-b + root) / safe, (-b - root) / safe
         first_is_slow = p + dp * one >= p + dp * two
         return np.where(first_is_slow, q + one, q + two), np.where(first_is_slow, q + two, q + one)
+
+
+def _real_step(value: Real, slope: Real, bend: Real) -> Real:
+    """Return x of value − slope·x + ½ bend·x² = 0, the smaller root; the nearest approach where there is none.
+
+    Newton's step value/slope where the slope is large. At a grazing wave slope and value are both rounding: this step
+    is then no longer than the square root of it, which is all that such a root is known to.
+    """
+    square = slope * slope - 2.0 * value * bend
+    both = slope + np.copysign(np.sqrt(np.maximum(square, 0.0)), slope)
+    touching = square <= 0.0
+    return np.where(touching, slope / bend, 2.0 * value / np.where(touching, 1.0, both))
+
+
+def _complex_step(value: Field, slope: Field, bend: Real) -> Field:
+    """Return the same for complex numbers, where there is always a root."""
+    root = np.sqrt(slope * slope - 2.0 * value * bend + 0j)
+    both = slope + np.where((np.conj(slope) * root).real >= 0.0, root, -root)
+    return 2.0 * value / np.where(both != 0.0, both, np.inf)

@@ -12,7 +12,7 @@ from crystal_core.optics import Scattering
 from tests.reference.arithmetic import Array
 from tests.reference.cases import Cases
 from tests.reference.comparison import assert_same_totals, kept_energy
-from tests.reference.media import Kind, Media
+from tests.reference.media import Kind, Media, random_frames
 
 NORMAL = np.array([0.0, 0.0, 1.0])
 OBLIQUE = np.array([0.48, 0.6, 0.64])
@@ -54,6 +54,24 @@ def cases_along_x(source: Media, target: Media, tangential: Sequence[float]) -> 
     along[0] = tangential
     first = np.zeros(count, int)
     return Cases(source.take(first), target.take(first), np.repeat(NORMAL[:, None], count, axis=1), along)
+
+
+def turned(cases: Cases, seed: int, turns: int) -> Cases:
+    """Return every case in some turned frames, where rounding spoils what was exact in the first."""
+    frames = random_frames(np.random.default_rng(seed), turns)
+    count = cases.normal.shape[1]
+    spread = np.tile(np.arange(count), turns)
+    turn = np.repeat(frames, count, axis=2)
+
+    def vectors(v: Array) -> Array:
+        return np.asarray(np.einsum("abn,b...n->a...n", turn, v))
+
+    wide = cases.take(spread)
+
+    def media(m: Media) -> Media:
+        return Media(m.kind, m.indices, np.ascontiguousarray(vectors(m.axes.swapaxes(0, 1)).swapaxes(0, 1)))
+
+    return Cases(media(wide.source), media(wide.target), vectors(wide.normal), vectors(wide.tangential))
 
 
 AIR, CALCITE = glass(1.0), uniaxial(1.6584, 1.4864, OBLIQUE)
@@ -112,14 +130,18 @@ def assert_finite(got: Scattering) -> None:
             assert np.isfinite(table[i][j][live]).all()
 
 
+def assert_energy(got: Scattering) -> None:
+    for j in range(2):
+        live = got.incident[j].propagating
+        np.testing.assert_allclose(kept_energy(got, j)[live], 1, rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("name", DEGENERATE)
 def test_degenerate_directions(name: str) -> None:
     cases = cases_along_x(*DEGENERATE[name])
     got = cases.run()
     assert_finite(got)
-    for j in range(2):
-        live = got.incident[j].propagating
-        np.testing.assert_allclose(kept_energy(got, j)[live], 1, rtol=0, atol=1e-12)
+    assert_energy(got)
     assert got.incident[0].propagating.all()
     for case in range(cases.tangential.shape[1]):
         assert_same_totals(got, cases.truth(case, digits=80), case, 1e-9)
@@ -150,6 +172,13 @@ CRITICAL: dict[str, tuple[Media, Media, float]] = {
     "grazing in aragonite, fast E along z": (biaxial((1.681, 1.6854, 1.53), np.eye(3)), AIR, 1.53),
     "optic axis of aragonite along the tangential k": (with_optic_axis(X), glass(1.7), 1.681),
     "glass to aragonite, optic axis along the tangential k": (glass(1.9), with_optic_axis(X), 1.681),
+    "grazing in a crystal of two equal indices": (biaxial((1.5, 1.5, 1.7), np.eye(3)), AIR, 1.5),
+    "uniaxial to aragonite": (uniaxial(1.5, 1.7, Y), biaxial((1.6854, 1.681, 1.53), np.eye(3)), 1.681),
+    "uniaxial, an ulp apart, to air": (uniaxial(1.55, BEYOND, OBLIQUE), AIR, 1.0),
+    "glass to uniaxial, an ulp apart": (glass(1.9), uniaxial(1.55, BEYOND, OBLIQUE), 1.55),
+    "grazing in uniaxial, an ulp apart": (uniaxial(1.55, BEYOND, OBLIQUE), AIR, 1.55),
+    "glass to biaxial, ulps apart": (glass(1.9), biaxial((1.55, BEYOND, 1.5500001)), 1.55),
+    "grazing in biaxial, ulps apart": (biaxial((1.55, BEYOND, 1.5500001)), AIR, 1.55),
     "grazing and critical in aragonite": (biaxial(axes=np.eye(3)), biaxial(axes=np.eye(3)), 1.681),
 }
 
@@ -162,6 +191,25 @@ SINGULAR = {
 
 
 @pytest.mark.parametrize("name", CRITICAL)
+@pytest.mark.parametrize("turns", [20, pytest.param(500, marks=pytest.mark.full)])
+def test_any_frame(name: str, turns: int) -> None:
+    """Turned as a whole, so that nothing is exact any more, faces at and about an edge keep energy and stay finite."""
+    source, target, edge = CRITICAL[name]
+    steps = [-1e-6, -1e-9, -1e-12, -1e-15, -1e-16, 0.0, 1e-16, 1e-15, 1e-12, 1e-9, 1e-6]
+    got = turned(cases_along_x(source, target, [edge + d for d in steps]), 401, turns).run()
+    assert_finite(got)
+    assert_energy(got)
+
+
+@pytest.mark.parametrize("name", DEGENERATE)
+@pytest.mark.parametrize("turns", [20, pytest.param(500, marks=pytest.mark.full)])
+def test_degenerate_in_any_frame(name: str, turns: int) -> None:
+    got = turned(cases_along_x(*DEGENERATE[name]), 402, turns).run()
+    assert_finite(got)
+    assert_energy(got)
+
+
+@pytest.mark.parametrize("name", CRITICAL)
 def test_critical_and_grazing(name: str) -> None:
     """Exactly at the edge, one ulp to both sides, and further: nothing is NaN, energy is kept, nothing jumps."""
     source, target, edge = CRITICAL[name]
@@ -170,11 +218,11 @@ def test_critical_and_grazing(name: str) -> None:
     tangential += [float(np.nextafter(edge, 0)), float(np.nextafter(edge, 3))]
     got = cases_along_x(source, target, tangential).run()
     assert_finite(got)
+    assert_energy(got)
     for j in range(2):
         live = got.incident[j].propagating
-        np.testing.assert_allclose(kept_energy(got, j)[live], 1, rtol=0, atol=1e-12)
         if live.all() and name not in SINGULAR:
             # powers go like the square root of the distance from the edge
             total = got.power_reflected[0][j] + got.power_reflected[1][j]
             for here, distance in zip(total, [*steps, 1e-15, 1e-15], strict=True):
-                assert abs(here - total[steps.index(0.0)]) < 20 * np.sqrt(abs(distance)) + 1e-6
+                assert abs(here - total[steps.index(0.0)]) < 50 * np.sqrt(abs(distance)) + 1e-6

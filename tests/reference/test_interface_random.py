@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
 
+from crystal_core.optics import Wave, optic_axes
+from tests.reference.arithmetic import Array
 from tests.reference.berreman import Scattered
 from tests.reference.cases import Cases, is_fair, random_cases
 from tests.reference.comparison import assert_agrees, kept_energy, matched, on_outer_sheet
@@ -95,13 +98,25 @@ def test_energy_is_kept(source: Kind, target: Kind) -> None:
     assert (~got.transmitted[0].propagating).sum() > 1_000
 
 
+def off_axis(waves: Iterable[Wave], axes: tuple[Array, ...]) -> Array:
+    """Return the rays with no wave within 1e-5 of an optic axis: there a mode is known to 1e-14/theta only."""
+    good = [
+        np.linalg.norm(np.cross(wave.k, axis, axis=0), axis=0) > 1e-5 * np.linalg.norm(wave.k, axis=0)
+        for wave in waves
+        for axis in axes
+    ]
+    return np.all(good, axis=0) if good else np.array(True)
+
+
 @pytest.mark.parametrize(("source", "target"), PAIRS)
 def test_paths_are_reversible(source: Kind, target: Kind) -> None:
     """The same face met from the far side by -k: waves, rays and the powers between each two modes come back."""
     cases = random_cases(103, source, target, 20_000)
     there, back = cases.run(), cases.reversed().run()
+    source_axes, target_axes = (optic_axes(media.medium()) for media in (cases.source, cases.target))
+    clear = off_axis((*there.incident, *there.reflected), source_axes) & off_axis(there.transmitted, target_axes)
     for i, j in itertools.product(range(2), range(2)):
-        live = there.incident[j].propagating & there.transmitted[i].propagating
+        live = there.incident[j].propagating & there.transmitted[i].propagating & clear
         assert live.sum() > 5_000
         np.testing.assert_allclose(-back.incident[i].k[:, live], there.transmitted[i].k[:, live], rtol=0, atol=1e-12)
         # a slanting wave has its ray within 1e-16 / k_n
@@ -110,6 +125,7 @@ def test_paths_are_reversible(source: Kind, target: Kind) -> None:
         np.testing.assert_allclose(return_, forth, rtol=0, atol=1e-10)
     mirrored = Cases(cases.source, cases.target, cases.normal, -cases.tangential).run()
     for i, j in itertools.product(range(2), range(2)):
-        live = there.incident[j].propagating & there.reflected[i].propagating
+        live = there.incident[j].propagating & there.reflected[i].propagating & clear
+        assert live.sum() > 14_000
         forth, return_ = there.power_reflected[i][j][live], mirrored.power_reflected[j][i][live]
         np.testing.assert_allclose(return_, forth, rtol=0, atol=1e-10)
