@@ -173,6 +173,10 @@ class Medium:
         """Return the medium without its absorption: what faces see of it."""
         return replace(self, absorption_per_mm=None, absorption_axes=None)
 
+    def inactive(self) -> Medium:
+        """Return the medium without its gyration: linear modes, those of its indices."""
+        return replace(self, gyration=None)
+
     def astype(self, precision: type[np.floating]) -> Medium:
         """Return the medium in single or double precision, np.float32 or np.float64.
 

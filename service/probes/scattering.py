@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crystal_core.errors import InputError, IsogyreError, NotSupportedError
-from crystal_core.materials.description import joint_medium
+from crystal_core.materials.description import MediumDescription, joint_medium
 from crystal_core.optics import Medium, Scattering, Wave, absorption_along_ray, scatter
 from crystal_core.optics.arrays import Complex, Field, Rays, Real, columns, dot
 
@@ -59,8 +59,8 @@ class _Batch:
     @classmethod
     def of(cls, requests: Sequence[InterfaceRequest]) -> _Batch:
         wavelengths = np.array([request.wavelength_nm for request in requests])
-        source = joint_medium([request.source for request in requests], wavelengths)
-        target = joint_medium([request.target for request in requests], wavelengths)
+        source = _medium([request.source for request in requests], wavelengths)
+        target = _medium([request.target for request in requests], wavelengths)
         normal = np.ascontiguousarray(np.array([request.normal for request in requests]).T)
         given = [request.wave_normal or request.tangential_k for request in requests]
         k = np.ascontiguousarray(np.array(given).T)
@@ -75,6 +75,16 @@ class _Batch:
 
     def scatter(self) -> Scattering:
         return scatter(self.normal, self.tangential_k, self.source, self.target)
+
+
+def _medium(descriptions: Sequence[MediumDescription], wavelength_nm: Real) -> Medium:
+    """Return the medium of each ray, a mineral's without its optical activity.
+
+    What an answer promises of H and of the names of modes holds for linear modes. Who wants those of an active medium
+    gives the gyration.
+    """
+    medium = joint_medium(descriptions, wavelength_nm)
+    return medium if descriptions[0].mineral is None else medium.inactive()
 
 
 def _within(k: Real, n: Real) -> Real:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -126,7 +126,7 @@ def mineral_surface(mineral_id: str, wavelength_nm: float, kind: SurfaceKind, re
     if not shortest <= wavelength_nm <= longest:
         reason = f"the indices of {mineral.id} are known from {shortest:g} to {longest:g} nm, not at {wavelength_nm:g}"
         raise InputError.at("--wavelength-nm", reason)
-    medium = replace(medium_of(mineral, wavelength_nm), gyration=None)
+    medium = medium_of(mineral, wavelength_nm).inactive()
     return MineralSurface(mineral.id, wavelength_nm, medium, wave_surface(medium, kind, resolution))
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import minerals_db
 from crystal_core.errors import InputError, NotSupportedError
-from crystal_core.materials import principal_indices
+from crystal_core.materials import gyration, principal_indices
 from service.probes.interface import INTERFACE, InterfaceAnswer
 from service.probes.probe import encode
 from tests.service.interface_questions import CALCITE, activated, any_question, turned
@@ -216,7 +216,13 @@ def test_active_media_join_too(source: int, target: int, active: tuple[str, ...]
 
 
 def test_quartz_turns_light_along_its_axis_to_the_right_or_left() -> None:
-    answer = INTERFACE.ask({**CALCITE, "wave_normal": [0, 0, 1], "to": {"mineral": "quartz"}})
+    entry = minerals_db.mineral("quartz")
+    quartz = {
+        "indices": [index[0] for index in principal_indices(entry, np.array([589.3]))],
+        "axes": IDENTITY,
+        "gyration": gyration(entry, np.array([589.3]))[..., 0].tolist(),
+    }
+    answer = INTERFACE.ask({**CALCITE, "wave_normal": [0, 0, 1], "to": quartz})
     into = of_kind(answer, "transmitted")
     # ρ = π (n_slow − n_fast)/λ: 21.7°/mm at the D line, in every textbook.
     turn = 180 * (into["slow"]["index"] - into["fast"]["index"]) / 589.3e-6
@@ -228,6 +234,14 @@ def test_quartz_turns_light_along_its_axis_to_the_right_or_left() -> None:
         assert abs(np.cos(np.angle(x / y))) < 1e-6
     # Dextro quartz: clockwise to whoever faces the source, so the fast wave is the clockwise one, (1, -i).
     assert (field(into["fast"])[1] / field(into["fast"])[0]).imag == pytest.approx(-1, abs=1e-6)
+
+
+def test_a_named_mineral_has_linear_modes_at_a_face() -> None:
+    answer = INTERFACE.ask({**CALCITE, "to": {"mineral": "quartz"}})
+    into = of_kind(answer, "transmitted")
+    assert set(into) == {"ordinary", "extraordinary"}
+    assert into["ordinary"]["index"] == pytest.approx(1.5442, abs=1e-4)
+    assert all(component[1] == 0 for wave in into.values() for component in wave["field"])
 
 
 def test_absorption_is_that_along_the_ray() -> None:
