@@ -24,7 +24,7 @@ from crystal_core.optics.indicatrix import BiaxialIndicatrix
 from crystal_core.optics.medium import Medium
 from crystal_core.optics.modes import Mode
 from crystal_core.optics.orthogonality import balance, orthogonalize
-from crystal_core.optics.sheets import Sheets
+from crystal_core.optics.sheets import Point, Sheets
 
 __all__ = ["FramedBiaxial"]
 
@@ -135,16 +135,21 @@ class FramedBiaxial(FramedMedium):
         """Return the waves along sign·normal, as `FramedMedium.pair` says."""
         forward = sign > 0
         slow, fast = self._refined(forward)
+        sheets = self._sheets
         second = self._second_branch()
         if not evanescent:
             first_slow = np.ones(slow.shape, np.bool_)
-            modes = self._mode(slow, SLOW, first_slow), self._mode(fast, second, self._second_slow)
+            points = sheets.at(slow), sheets.at(fast)
+            modes = self._mode(points[0], SLOW, first_slow), self._mode(points[1], second, self._second_slow)
         else:
             (q0, branch0), (q1, branch1) = self._complex(slow, fast, second, forward)
-            modes = self._mode(q0, branch0, branch0 == SLOW), self._mode(q1, branch1, branch1 == SLOW)
-        q = modes[0].q.real
-        limit = (ONE_FRAME * _fourth_root(q)) ** 2 * (self.frame.kappa**2 + q * q)
-        orthogonalize(modes, np.flatnonzero((self._sheets.nearest(q) < limit) & self._free[1]))
+            points = sheets.at(q0), sheets.at(q1)
+            modes = (
+                self._mode(points[0], branch0, branch0 == SLOW),
+                self._mode(points[1], branch1, branch1 == SLOW),
+            )
+        limit = (ONE_FRAME * _fourth_root(slow)) ** 2 * points[0].k2.real
+        orthogonalize(modes, np.flatnonzero((points[0].nearest() < limit) & self._free[1]))
         return modes
 
     def both_pairs(self, evanescent: bool) -> tuple[tuple[Mode, Mode], tuple[Mode, Mode]]:
@@ -157,9 +162,10 @@ class FramedBiaxial(FramedMedium):
         """Return the real roots of both modes to rounding; they mean nothing where a wave is evanescent."""
         sheets = self._sheets
         slow, fast = self._forward if forward else self._backward
-        k2 = sheets.kappa * sheets.kappa + slow * slow
-        near = (sheets.nearest(slow) < (NEAR_AXIS * _fourth_root(slow)) ** 2 * k2) & self._free[1] & ~self._second_slow
-        slow = sheets.refined(slow, SLOW, STEPS)
+        start = sheets.at(slow)
+        reach = (NEAR_AXIS * _fourth_root(slow)) ** 2 * start.k2
+        near = (start.nearest() < reach) & self._free[1] & ~self._second_slow
+        slow = sheets.refined(sheets.step(start, SLOW), SLOW, STEPS - 1)
         fast = sheets.refined(fast, self._second_branch(), STEPS)
         rays = np.flatnonzero(near)
         if rays.size:
@@ -185,8 +191,8 @@ class FramedBiaxial(FramedMedium):
         sheets = self._sheets.take(rays)
         ahead, back = self._forward[1][rays], self._backward[1][rays]
         pair = sheets.near_axis(0.5 * (ahead + back))
-        reach = (NEAR_AXIS * _fourth_root(ahead)) ** 2 * (sheets.kappa * sheets.kappa + ahead * ahead)
-        near = (sheets.nearest(ahead) < reach) & (sheets.nearest(back) < reach)
+        reach = (NEAR_AXIS * _fourth_root(ahead)) ** 2 * sheets.at(ahead).k2
+        near = (sheets.at(ahead).nearest() < reach) & (sheets.at(back).nearest() < reach)
         root = np.minimum(*pair) if forward else np.maximum(*pair)
         return np.where(near, sheets.refined(root, SLOW, MORE_STEPS), sheets.refined(known, SLOW, MORE_STEPS))
 
@@ -216,13 +222,13 @@ class FramedBiaxial(FramedMedium):
                 roots[mode][rays] = sheets.refined_complex(roots[mode][rays], branches[mode][rays], MORE_STEPS)
         return (roots[0], branches[0]), (roots[1], branches[1])
 
-    def _mode(self, q: Field, branch: Real | float, slow: BoolArray) -> Mode:
+    def _mode(self, k: Point, branch: Real | float, slow: BoolArray) -> Mode:
         """Return the fields of waves with given roots on given branches."""
-        kappa = self.frame.kappa
+        kappa, q = self.frame.kappa, k.q
         sheets = self._sheets
-        (x1, y1, z1), (x2, y2, z2) = sheets.axes
-        ux, uy, uz = self._direction(0, q)
-        vx, vy, vz = self._direction(1, q)
+        (x1, y1, z1), (x2, y2, z2) = (axis[:3] for axis in sheets.axes)
+        ux, uy, uz = self._direction(0, k)
+        vx, vy, vz = self._direction(1, k)
         same = (ux * vx + uy * vy + uz * vz).real >= 0.0
         # The longer of u₁ ± u₂; the other vibration is across it and k.
         one = kappa.dtype.type(1.0)
@@ -240,17 +246,16 @@ class FramedBiaxial(FramedMedium):
         hx, hy, hz = -q * ey, q * ex - kappa * ez, kappa * ey
         return Mode(q, ex, ey, ez, hx, hy, None, slow, hz)
 
-    def _direction(self, which: int, q: Field) -> tuple[Field, Field, Field]:
+    def _direction(self, which: int, k: Point) -> tuple[Field, Field, Field]:
         """Return k × o/|k × o| (without conjugation) of an optic axis, and y where k lies along it."""
         kappa = self.frame.kappa
-        x, y, z = self._sheets.axes[which]
-        square = self._sheets.square(which, q)[0]
+        axis, square = self._sheets.axes[which], k.squares[which]
         on_axis = np.abs(square) <= (ON_AXIS * np.finfo(kappa.dtype).eps) ** 2
         some = bool(on_axis.any())
         if some:
             square = np.where(on_axis, 1.0, square)
         inverse = 1.0 / np.sqrt(square)
-        across = -q * y * inverse, (q * x - kappa * z) * inverse, kappa * y * inverse
+        across = -k.q * (axis.y * inverse), k.levers[which] * inverse, axis.ky * inverse
         if not some:
             return across
         a, b, c = (np.where(on_axis, value, v) for value, v in zip((0.0, 1.0, 0.0), across, strict=True))

@@ -87,7 +87,12 @@ def _selected(mode: Mode, rays: Rays) -> Mode:
 
 
 def _square_of_field(mode: Mode) -> Real:
-    total = np.zeros_like(mode.q.real)
-    for component in _components(mode)[:3]:
-        total = total + np.abs(component) ** 2
-    return total
+    first, *rest = (_squared(component) for component in _components(mode)[:3])
+    return sum(rest, start=first)
+
+
+def _squared(values: Field) -> Real:
+    """Return |values|²."""
+    if np.iscomplexobj(values):
+        return np.asarray(values.real * values.real + values.imag * values.imag)
+    return np.asarray(values * values)

@@ -16,6 +16,7 @@ together; F does not: there an error of ε in k is one of ε in q, and of ε/θ 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,10 +26,25 @@ from crystal_core.optics.indicatrix import BiaxialIndicatrix
 from crystal_core.optics.medium import take
 from crystal_core.optics.quartic import Quadratics, real_quadratics
 
-__all__ = ["Sheets"]
+__all__ = ["Axis", "Point", "Sheets"]
 
-Axis = tuple[Real, Real, Real]
-"""Components along x, y, z of the interface frame."""
+
+class Axis(NamedTuple):
+    """An optic axis o = (x, y, z) in the frame of the interface, with y² and the products κx, κy, κz; shape (N,)."""
+
+    x: Real
+    y: Real
+    z: Real
+    y2: Real
+    kx: Real
+    ky: Real
+    kz: Real
+
+    @classmethod
+    def of(cls, direction: Real, frame: InterfaceFrame) -> Axis:
+        """Return the axis of a world direction, shape (3,) or (3, N)."""
+        x, y, z = frame.components(direction)
+        return cls(x, y, z, y * y, frame.kappa * x, frame.kappa * y, frame.kappa * z)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,20 +53,23 @@ class Sheets:
 
     Parameters
     ----------
-    kappa : Real
-        Tangential wave vector.
-    mean, half : Real
-        ½(α⁻² + γ⁻²) and ½(α⁻² − γ⁻²).
+    kappa, kappa2 : Real
+        Tangential wave vector, and its square.
+    half : Real
+        ½(α⁻² − γ⁻²).
     middle : Real
         β⁻².
+    smooth : three of Real
+        The coefficients of P = p₂q² + p₁q + p₀.
     axes : pair of Axis
         The optic axes.
     """
 
     kappa: Real
-    mean: Real
+    kappa2: Real
     half: Real
     middle: Real
+    smooth: tuple[Real, Real, Real]
     axes: tuple[Axis, Axis]
 
     @classmethod
@@ -60,58 +79,46 @@ class Sheets:
         product = (alpha * gamma) ** 2
         half = 0.5 * (gamma - alpha) * (gamma + alpha) / product
         mean = 0.5 * (alpha * alpha + gamma * gamma) / product
-        first, second = indicatrix.optic_axes()
-        return cls(
-            frame.kappa,
-            np.asarray(mean),
-            np.asarray(half),
-            np.asarray(1.0 / indicatrix.beta**2),
-            (frame.components(first), frame.components(second)),
+        one, two = (Axis.of(direction, frame) for direction in indicatrix.optic_axes())
+        smooth = (
+            mean + half * one.z * two.z,
+            half * (one.kx * two.z + one.z * two.kx),
+            frame.kappa * (mean * frame.kappa + half * one.x * two.kx) - 1.0,
         )
+        kappa2 = frame.kappa * frame.kappa
+        middle = 1.0 / indicatrix.beta**2
+        return cls(frame.kappa, kappa2, np.asarray(half), np.asarray(middle), smooth, (one, two))
 
     def take(self, rays: Rays) -> Sheets:
         """Return those of a selection of rays."""
-        one, two = ((x[rays], y[rays], z[rays]) for x, y, z in self.axes)
+        p2, p1, p0 = self.smooth
+        one, two = (Axis(*(part[rays] for part in axis)) for axis in self.axes)
         return Sheets(
-            self.kappa[rays], take(self.mean, rays), take(self.half, rays), take(self.middle, rays), (one, two)
+            self.kappa[rays],
+            self.kappa2[rays],
+            take(self.half, rays),
+            take(self.middle, rays),
+            (p2[rays], p1[rays], p0[rays]),
+            (one, two),
         )
+
+    def at(self, q: Field) -> Point:
+        """Return what the equations say of k = (κ, 0, q)."""
+        return Point(self, q)
 
     def gap(self, q: Real) -> Real:
         """Return P alone: positive on the outer sheet, negative on the inner one."""
-        (x1, _, z1), (x2, _, z2) = self.axes
-        across = self.half * (self.kappa * x1 + q * z1) * (self.kappa * x2 + q * z2)
-        return np.asarray(self.mean * (self.kappa * self.kappa + q * q) + across - 1.0)
-
-    def nearest(self, q: Real) -> Real:
-        """Return the least |k × o|² of both optic axes."""
-        return np.minimum(self.square(0, q)[0], self.square(1, q)[0])
-
-    def smooth(self, q: Field) -> tuple[Field, Field]:
-        """Return P and dP/dq."""
-        (x1, _, z1), (x2, _, z2) = self.axes
-        along1, along2 = self.kappa * x1 + q * z1, self.kappa * x2 + q * z2
-        p = self.mean * (self.kappa * self.kappa + q * q) + self.half * along1 * along2 - 1.0
-        return p, 2.0 * self.mean * q + self.half * (z1 * along2 + z2 * along1)
-
-    def square(self, which: int, q: Field) -> tuple[Field, Field]:
-        """Return |k × o|² of an optic axis, without conjugation, as a sum of squares, and its derivative."""
-        x, y, z = self.axes[which]
-        y2 = y * y
-        lever = q * x - self.kappa * z
-        return y2 * (self.kappa * self.kappa + q * q) + lever * lever, 2.0 * (y2 * q + x * lever)
+        p2, p1, p0 = self.smooth
+        return np.asarray(q * (p2 * q + p1) + p0)
 
     def quadratics(self) -> Quadratics:
         """Return Fresnel's quartic in q as two quadratics."""
-        (x1, y1, z1), (x2, y2, z2) = self.axes
-        kappa, half = self.kappa, self.half
-        kappa2 = kappa * kappa
-        p2 = self.mean + half * z1 * z2
-        p1 = half * kappa * (x1 * z2 + z1 * x2)
-        p0 = kappa2 * (self.mean + half * x1 * x2) - 1.0
+        one, two = self.axes
+        p2, p1, p0 = self.smooth
         # W = q²·f − 2 q·g + h for each axis
-        f1, g1, h1 = x1 * x1 + y1 * y1, kappa * x1 * z1, kappa2 * (y1 * y1 + z1 * z1)
-        f2, g2, h2 = x2 * x2 + y2 * y2, kappa * x2 * z2, kappa2 * (y2 * y2 + z2 * z2)
-        w = half * half
+        f1, g1, h1 = one.x * one.x + one.y2, one.kx * one.z, one.ky * one.ky + one.kz * one.kz
+        f2, g2, h2 = two.x * two.x + two.y2, two.kx * two.z, two.ky * two.ky + two.kz * two.kz
+        w = self.half * self.half
         lead = p2 * p2 - w * f1 * f2
         return real_quadratics(
             2.0 * (p2 * p1 + w * (f1 * g2 + g1 * f2)) / lead,
@@ -120,22 +127,20 @@ class Sheets:
             (p0 * p0 - w * h1 * h2) / lead,
         )
 
-    def curvature(self) -> Real:
-        """Return d²P/dq²; that of F is the same to the order of the birefringence."""
-        (_, _, z1), (_, _, z2) = self.axes
-        return np.asarray(2.0 * (self.mean + self.half * z1 * z2))
-
     def refined(self, q: Real, branch: Real | float, steps: int) -> Real:
         """Return real roots after some steps towards F = P + branch·W = 0; −1 is slow, +1 fast."""
-        weight = branch * self.half
         for _ in range(steps):
-            p, dp = self.smooth(q)
-            first, d_first = self.square(0, q)
-            second, d_second = self.square(1, q)
-            w = np.sqrt(first * second)
-            slope = dp + weight * (d_first * second + first * d_second) / (2.0 * np.maximum(w, np.finfo(w.dtype).tiny))
-            q = q - _real_step(np.asarray((p + weight * w).real), np.asarray(slope.real), self.curvature())
+            q = self.step(self.at(q), branch)
         return np.asarray(q)
+
+    def step(self, here: Point, branch: Real | float) -> Real:
+        """Return a real q, one step from a point towards F = P + branch·W = 0."""
+        p, dp = here.smooth()
+        weight = branch * self.half
+        w = np.sqrt(here.squares[0] * here.squares[1])
+        slope = dp + weight * here.slope_of_product() / np.maximum(w, np.finfo(w.dtype).tiny)
+        value, slope = np.asarray((p + weight * w).real), np.asarray(slope.real)
+        return np.asarray(here.q.real - _real_step(value, slope, 2.0 * self.smooth[0]))
 
     def split(self, centre: Field) -> tuple[Field, Field, BoolArray]:
         """Return the slow and the fast root near a point where the sheets are close, and if both surely are real.
@@ -143,14 +148,16 @@ class Sheets:
         With W constant they solve P ∓ W = 0. Where |P′| exceeds every possible |W′|, F rises or falls on either sheet,
         each has one real root, and no rounding of the quartic can make them complex.
         """
-        p, dp = self.smooth(centre)
-        first, second = self.square(0, centre)[0], self.square(1, centre)[0]
+        here = self.at(centre)
+        p, dp = here.smooth()
+        first, second = here.squares
         w = self.half * np.sqrt(first) * np.sqrt(second)
-        (x1, y1, _), (x2, y2, _) = self.axes
+        one, two = self.axes
         # |d|k × o|/dq| is at most the part of o across z.
-        steepest = np.sqrt((x1 * x1 + y1 * y1) * np.abs(second)) + np.sqrt((x2 * x2 + y2 * y2) * np.abs(first))
+        level1, level2 = one.x * one.x + one.y2, two.x * two.x + two.y2
+        steepest = np.sqrt(level1 * np.abs(second)) + np.sqrt(level2 * np.abs(first))
         sure = np.abs(dp) > 1.1 * self.half * steepest + np.finfo(steepest.dtype).tiny
-        bend = self.curvature()
+        bend = 2.0 * self.smooth[0]
         if np.iscomplexobj(centre):
             return centre - _complex_step(p - w, dp, bend), centre - _complex_step(p + w, dp, bend), sure
         slow, fast = (_real_step(np.asarray((p + sign * w).real), np.asarray(dp.real), bend) for sign in (-1.0, 1.0))
@@ -158,20 +165,20 @@ class Sheets:
 
     def branch(self, q: Complex) -> Real:
         """Return the branch of a complex root: −1 if P is W of the principal roots √Q₁·√Q₂, +1 if it is −W."""
-        p, _ = self.smooth(q)
-        w = self.half * np.sqrt(self.square(0, q)[0]) * np.sqrt(self.square(1, q)[0])
+        here = self.at(q)
+        p, w = here.smooth()[0], self.half * np.sqrt(here.squares[0]) * np.sqrt(here.squares[1])
         return np.where(np.abs(p + w) < np.abs(p - w), 1.0, -1.0)
 
     def refined_complex(self, q: Complex, branch: Real, steps: int) -> Complex:
         """Return complex roots after some steps towards F = P + branch·√Q₁·√Q₂ = 0."""
         for _ in range(steps):
-            p, dp = self.smooth(q)
-            first, d_first = self.square(0, q)
-            second, d_second = self.square(1, q)
+            here = self.at(q)
+            p, dp = here.smooth()
+            first, second = here.squares
             w = np.sqrt(first) * np.sqrt(second)
             flat = w == 0.0
-            slope = dp + branch * self.half * (d_first * second + first * d_second) / np.where(flat, 1.0, 2.0 * w)
-            q = q - _complex_step(p + branch * self.half * w, slope, self.curvature())
+            slope = dp + branch * self.half * here.slope_of_product() / np.where(flat, 1.0, w)
+            q = q - _complex_step(p + branch * self.half * w, slope, 2.0 * self.smooth[0])
         return np.asarray(q, np.result_type(q, np.complex64))
 
     def near_axis(self, q: Real) -> tuple[Real, Real]:
@@ -182,22 +189,75 @@ class Sheets:
         There |k × o| = √Q turns a corner as fast as q changes, while P is all but linear and the other axis far: P
         linear, the other factor constant and Q whole leave one quadratic, (P + P′x)² = ½²(α⁻² − γ⁻²)² Q′(Q + …).
         """
-        p, dp = self.smooth(q)
-        squares = self.square(0, q), self.square(1, q)
-        second = squares[1][0] < squares[0][0]
-        square, d_square = (np.where(second, b, a) for a, b in zip(*squares, strict=True))
-        x, y, _ = (np.where(second, b, a) for a, b in zip(*self.axes, strict=True))
-        lead = x * x + y * y
-        weight = self.half * self.half * np.where(second, squares[0][0], squares[1][0])
+        here = self.at(q)
+        p, dp = here.smooth()
+        second = here.squares[1] < here.squares[0]
+        square, d_square = (np.where(second, b, a) for a, b in (here.squares, here.slopes()))
+        x, y2, ky = (np.where(second, b, a) for a, b in zip(*((o.x, o.y2, o.ky) for o in self.axes), strict=True))
+        lead = x * x + y2
+        weight = self.half * self.half * np.where(second, here.squares[0], here.squares[1])
         a = dp * dp - weight * lead
-        b = p * dp - 0.5 * weight * d_square
+        b = p * dp - weight * d_square
         # b² − a·c with what cancels taken out by hand.
-        tilted = lead * p * p - p * dp * d_square + dp * dp * square
-        root = np.sqrt(np.maximum(weight * (tilted - weight * (self.kappa * y) ** 2), 0.0))
+        tilted = lead * p * p - 2.0 * p * dp * d_square + dp * dp * square
+        root = np.sqrt(np.maximum(weight * (tilted - weight * ky * ky), 0.0))
         safe = np.where(a != 0.0, a, 1.0)
         one, two = (-b + root) / safe, (-b - root) / safe
         first_is_slow = p + dp * one >= p + dp * two
         return np.where(first_is_slow, q + one, q + two), np.where(first_is_slow, q + two, q + one)
+
+
+class Point:
+    """A point k = (κ, 0, q) on the normal's line, real or complex, with what the equations need of it, computed once.
+
+    Parameters
+    ----------
+    sheets : Sheets
+        The equations.
+    q : Field
+        The normal component, shape (N,).
+
+    Attributes
+    ----------
+    k2 : Field
+        k·k, without conjugation.
+    levers : pair of Field
+        y component of k × o for each axis; the others are −q·y and κ·y.
+    squares : pair of Field
+        |k × o|², without conjugation, as a sum of squares.
+    """
+
+    __slots__ = ("_sheets", "k2", "levers", "q", "squares")
+
+    def __init__(self, sheets: Sheets, q: Field) -> None:
+        one, two = sheets.axes
+        self._sheets = sheets
+        self.q = q
+        self.k2: Field = sheets.kappa2 + q * q
+        self.levers: tuple[Field, Field] = (q * one.x - one.kz, q * two.x - two.kz)
+        first, second = self.levers
+        self.squares: tuple[Field, Field] = (one.y2 * self.k2 + first * first, two.y2 * self.k2 + second * second)
+
+    def nearest(self) -> Real:
+        """Return the least |k × o|² of both axes, of real k."""
+        return np.minimum(self.squares[0].real, self.squares[1].real)
+
+    def smooth(self) -> tuple[Field, Field]:
+        """Return P and dP/dq."""
+        p2, p1, p0 = self._sheets.smooth
+        term = p2 * self.q
+        rest = term + p1
+        return self.q * rest + p0, rest + term
+
+    def slopes(self) -> tuple[Field, Field]:
+        """Return half the derivative of each of the squares."""
+        one, two = self._sheets.axes
+        return one.y2 * self.q + one.x * self.levers[0], two.y2 * self.q + two.x * self.levers[1]
+
+    def slope_of_product(self) -> Field:
+        """Return half the derivative of the product of both squares."""
+        first, second = self.slopes()
+        return first * self.squares[1] + self.squares[0] * second
 
 
 def _real_step(value: Real, slope: Real, bend: Real) -> Real:
@@ -206,10 +266,13 @@ def _real_step(value: Real, slope: Real, bend: Real) -> Real:
     Newton's step value/slope where the slope is large. At a grazing wave slope and value are both rounding: this step
     is then no longer than the square root of it, which is all that such a root is known to.
     """
-    square = slope * slope - 2.0 * value * bend
+    double = 2.0 * value
+    square = slope * slope - double * bend
     both = slope + np.copysign(np.sqrt(np.maximum(square, 0.0)), slope)
     touching = square <= 0.0
-    return np.where(touching, slope / bend, 2.0 * value / np.where(touching, 1.0, both))
+    if not touching.any():
+        return np.asarray(double / both)
+    return np.where(touching, slope / bend, double / np.where(touching, 1.0, both))
 
 
 def _complex_step(value: Field, slope: Field, bend: Real) -> Field:

@@ -71,16 +71,17 @@ class FramedUniaxial(ClosedForm):
         eps_o = self._eps_o
 
         q_o = sign * signed_root(self._q2, evanescent)
-        mx: Field = -q_o * cy
+        cy2 = cy * cy
+        mx: Field = -cy * q_o
         my: Field = q_o * cx - kappa * cz
         mz: Field = np.broadcast_to(kappa * cy, q_o.shape)
-        m2: Field = mx * mx + my * my + mz * mz
+        m2: Field = cy2 * eps_o + my * my  # the squares of mx and mz add up to cy² k²
 
         # q_e = (root − b)/a, written as its difference from q_o, which solves k·ε·k − ε_o ε_e = −difference·|m|²: near
         # the optic axis the plain difference of two nearly equal roots would lose every digit.
         root = sign * signed_root(self._discriminant, evanescent)
         slope = self._a * q_o + self._b + root
-        straight = (np.abs(slope) < np.abs(root)) | (slope == 0)
+        straight = np.abs(slope) <= np.abs(root)
         crossed = bool(straight.any())
         if crossed:
             slope[straight] = 1.0
@@ -89,27 +90,29 @@ class FramedUniaxial(ClosedForm):
             shift = np.where(straight, (root - self._b) / self._a - q_o, shift)
         q_e = q_o + shift
 
-        nx: Field = mx - shift * cy
+        nx: Field = -cy * q_e
         ny: Field = my + shift * cx
-        nz = mz
-        m2_e: Field = nx * nx + ny * ny + nz * nz
+        k2: Field = kappa * kappa + q_e * q_e
+        m2_e: Field = cy2 * k2 + ny * ny
         # A complex m can have m·m = 0 without vanishing, hence the conjugate.
         on_axis_square = (ON_AXIS * np.finfo(kappa.dtype).eps) ** 2
         on_axis = (m2 if not evanescent else _squared_length(mx, my, mz)) <= on_axis_square * eps_o
         if on_axis.any():
             mx, my, mz = (np.where(on_axis, value, m) for value, m in ((0.0, mx), (1.0, my), (0.0, mz)))
-            nx, ny, nz = (np.where(on_axis, value, m) for value, m in ((0.0, nx), (1.0, ny), (0.0, nz)))
-            m2_e = np.where(on_axis, 0.0, m2_e)
+            nx, ny = np.where(on_axis, 0.0, nx), np.where(on_axis, 1.0, ny)
+            m2_e, cy = np.where(on_axis, 0.0, m2_e), np.where(on_axis, 0.0, cy)
 
-        ordinary = Mode(q_o, mx, my, mz, -q_o * my, q_o * mx - kappa * mz, (kappa, None, q_o), "ordinary")
+        # The y component of k × m is −cy k².
+        hy: Field = np.broadcast_to(-cy * eps_o, q_o.shape)
+        ordinary = Mode(q_o, mx, my, mz, -q_o * my, hy, (kappa, None, q_o), "ordinary")
         inverse = 1.0 / eps_o
         along_c = m2_e * (1.0 / self._eps_e - inverse)
         stretch = self._difference * (kappa * cx + q_e * cz)
         extraordinary = Mode(
             q_e,
             q_e * ny * inverse + along_c * cx,
-            (kappa * nz - q_e * nx) * inverse + along_c * cy,
-            -kappa * ny * inverse + along_c * cz,
+            cy * (k2 * inverse + along_c),
+            along_c * cz - kappa * inverse * ny,
             nx,
             ny,
             (eps_o * kappa + stretch * cx, stretch * cy, eps_o * q_e + stretch * cz),

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-YARDSTICKS = {"elli", "pyelli", "prtlab", "mpmath", "hypothesis", "tests"}
+YARDSTICKS = {"elli", "pyelli", "prtlab", "mpmath", "hypothesis", "numba", "llvmlite", "tests"}
 
 
 def imported(source: str) -> set[str]:
