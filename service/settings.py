@@ -41,7 +41,7 @@ class Settings(BaseSettings):
     worker_niceness: Annotated[int, Field(ge=0, le=19)] = Field(
         default=5, description="How far workers stand behind the service when processors are scarce"
     )
-    max_body_bytes: Annotated[int, Field(ge=1024)] = Field(default=65536, description="Largest request body")
+    max_body_bytes: Annotated[int, Field(ge=1024)] = Field(default=1_048_576, description="Largest request body")
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         default="info", description="Least level that is logged"
     )

@@ -153,9 +153,9 @@ class Scattering:
     Parameters
     ----------
     incident, reflected, transmitted : pair of Wave
-        Modes of isotropic media: s, p; of uniaxial ones: ordinary, extraordinary; of biaxial ones: slow, then fast or
-        a second slow one. Incident waves that are evanescent cannot come in: their columns of amplitudes and powers
-        are NaN.
+        Modes of isotropic media: s, p; of uniaxial ones: ordinary, extraordinary; of biaxial and of optically active
+        ones: slow, then fast or a second slow one. Incident waves that are evanescent cannot come in: their columns of
+        amplitudes and powers are NaN.
     amplitude_reflected, amplitude_transmitted : nested list of Field
         [i][j]: amplitude of outgoing mode i for incident mode j of unit field, shape (N,).
     power_reflected, power_transmitted : nested list of Real

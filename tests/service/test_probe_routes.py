@@ -95,7 +95,7 @@ def test_wrong_lines_are_told_by_number(client: TestClient) -> None:
         (b"", "application/jsonl", 400, "json"),
         (b"{}\n{\n", "application/jsonl", 422, "input"),
         (b"{\n{}\n", "application/jsonl", 400, "json"),
-        (b"\n" + b" " * 65536, "application/jsonl", 413, "too-large"),
+        (b"\n" + b" " * 1_048_576, "application/jsonl", 413, "too-large"),
     ],
 )
 @pytest.mark.parametrize("probe", QUESTIONS)

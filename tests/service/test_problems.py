@@ -15,7 +15,7 @@ from service.workshop import Workshop
 from tests.service.helpers import ask, finish
 
 JSON = {"Content-Type": "application/json"}
-LIMIT = 65536
+LIMIT = 1_048_576
 
 
 def padded(size: int) -> bytes:
@@ -87,7 +87,7 @@ def test_a_body_without_a_length_is_cut_off_too(client: TestClient) -> None:
 
     def endless() -> Any:
         nonlocal sent
-        for _ in range(1000):
+        for _ in range(2 * LIMIT // 1024):
             sent += 1024
             yield b" " * 1024
 
