@@ -130,10 +130,10 @@ def assert_finite(got: Scattering) -> None:
             assert np.isfinite(table[i][j][live]).all()
 
 
-def assert_energy(got: Scattering) -> None:
+def assert_energy(got: Scattering, bound: float = 1e-12) -> None:
     for j in range(2):
         live = got.incident[j].propagating
-        np.testing.assert_allclose(kept_energy(got, j)[live], 1, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(kept_energy(got, j)[live], 1, rtol=0, atol=bound)
 
 
 @pytest.mark.parametrize("name", DEGENERATE)
@@ -190,6 +190,14 @@ SINGULAR = {
 }
 
 
+# Where all four waves of a crystal meet, grazing the face along its optic axis or nearly without birefringence, each is
+# known to the square root of rounding, and in one of a thousand frames energy is off by as much as one of them carries.
+FOUR_MEET = {
+    "glass to quartz, axis along the tangential k": 1e-8,
+    "grazing in uniaxial, an ulp apart": 1e-8,
+}
+
+
 @pytest.mark.parametrize("name", CRITICAL)
 @pytest.mark.parametrize("turns", [20, pytest.param(500, marks=pytest.mark.full)])
 def test_any_frame(name: str, turns: int) -> None:
@@ -198,7 +206,7 @@ def test_any_frame(name: str, turns: int) -> None:
     steps = [-1e-6, -1e-9, -1e-12, -1e-15, -1e-16, 0.0, 1e-16, 1e-15, 1e-12, 1e-9, 1e-6]
     got = turned(cases_along_x(source, target, [edge + d for d in steps]), 401, turns).run()
     assert_finite(got)
-    assert_energy(got)
+    assert_energy(got, FOUR_MEET.get(name, 1e-12))
 
 
 @pytest.mark.parametrize("name", DEGENERATE)
