@@ -186,8 +186,8 @@ class Sheets:
 
         Both may be slow: then the line passes the dimple at the axis, and the order means nothing.
 
-        There |k × o| = √Q turns a corner as fast as q changes, while P is all but linear and the other axis far: P
-        linear, the other factor constant and Q whole leave one quadratic, (P + P′x)² = ½²(α⁻² − γ⁻²)² Q′(Q + …).
+        There |k × o| = √Q turns a corner as fast as q changes, while P is all but linear and the other axis far. With
+        Q₂ for the square of that one, constant, (P + P′x)² = ½²(α⁻² − γ⁻²)² Q₂ Q(q + x) is one quadratic for x.
         """
         here = self.at(q)
         p, dp = here.smooth()
