@@ -1,14 +1,16 @@
 """A measured quantity as a function of the wavelength, known in a range: what indices and rotatory powers share.
 
-**Range.** A curve is known only inside its ``range_nm``. Outside it the value at the nearer end is returned: formulas
-are meaningless near their poles, and a constant is the one continuation that cannot run away.
+**Range.** A curve is known only inside its ``range_nm``: formulas are meaningless near their poles. Outside it the
+value at the nearer end is returned (``outside_range: clamp``), the one continuation that cannot run away, or the
+question is refused (``outside_range: refuse``).
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +21,36 @@ from minerals_db.fields import Known, Number, Positive
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
-__all__ = ["Curve", "FloatArray", "Table"]
+__all__ = ["Curve", "FloatArray", "OutsideRangeError", "Table"]
 
 FloatArray = npt.NDArray[np.float64]
+
+
+class OutsideRangeError(ValueError):
+    """A question for a wavelength at which the curve is not known.
+
+    Parameters
+    ----------
+    wavelength_nm : float
+        The wavelength asked for, nm.
+    range_nm : tuple of two floats
+        Where the curve is known, nm.
+    name : str
+        What the wavelength is called, if it has a name.
+    """
+
+    def __init__(self, wavelength_nm: float, range_nm: tuple[float, float], name: str = "") -> None:
+        self.wavelength_nm = wavelength_nm
+        self.range_nm = range_nm
+        self.name = name
+        super().__init__(wavelength_nm, range_nm, name)
+
+    def __str__(self) -> str:
+        """Return a sentence that names the wavelength and the range."""
+        # Nine digits: a wavelength just outside must not read as the end of the range.
+        shortest, longest = self.range_nm
+        there = f"{self.name}, {self.wavelength_nm:.9g} nm" if self.name else f"{self.wavelength_nm:.9g} nm"
+        return f"the curve is known from {shortest:.9g} to {longest:.9g} nm, not at {there}"
 
 
 class Curve(Known, ABC):
@@ -29,16 +58,27 @@ class Curve(Known, ABC):
 
     range_nm: Annotated[tuple[Positive, Positive], Field(description="Shortest and longest wavelength known, nm")]
     temperature_celsius: Number | None = Field(None, description="Temperature of the specimen, if the source says it")
+    outside_range: Literal["clamp", "refuse"] = Field(
+        "clamp", description="Outside range_nm: the value at the nearer end, or an error"
+    )
 
     @abstractmethod
     def _value(self, wavelength_nm: FloatArray) -> FloatArray:
         """Return the quantity at wavelengths inside the range; elementwise, NaN of NaN."""
 
-    def _at(self, wavelength_nm: npt.ArrayLike) -> FloatArray:
-        """Return the quantity, shape of the wavelengths (nm), which are clamped to the range; NaN gives NaN."""
+    def _known(self, wavelength_nm: npt.ArrayLike) -> FloatArray:
+        """Return the wavelengths (nm) at which to answer: clamped to the range, or refused; NaN stays NaN."""
         shortest, longest = self.range_nm
-        clamped = np.clip(np.asarray(wavelength_nm, dtype=np.float64), shortest, longest)
-        return np.asarray(self._value(clamped), dtype=np.float64)
+        asked = np.asarray(wavelength_nm, dtype=np.float64)
+        if self.outside_range == "refuse":
+            outside = asked[(asked < shortest) | (asked > longest)]
+            if outside.size:
+                raise OutsideRangeError(float(outside[0]), self.range_nm)
+        return np.asarray(np.clip(asked, shortest, longest), dtype=np.float64)
+
+    def _at(self, wavelength_nm: npt.ArrayLike) -> FloatArray:
+        """Return the quantity, shape of the wavelengths (nm); outside the range as ``outside_range`` says."""
+        return np.asarray(self._value(self._known(wavelength_nm)), dtype=np.float64)
 
     def covers(self, shortest_nm: float, longest_nm: float) -> bool:
         """Tell whether the curve is known over the whole interval (nm), so that nothing is clamped."""
@@ -49,6 +89,14 @@ class Curve(Known, ABC):
         if self.range_nm[0] >= self.range_nm[1]:
             raise ValueError(f"range_nm must rise, not {self.range_nm[0]:g} to {self.range_nm[1]:g}")
         return self
+
+    def _refuse_poles(self, poles_um: Iterable[float]) -> None:
+        """Raise a ValueError if the formula is infinite at one of the wavelengths (µm) inside the range."""
+        shortest, longest = self.range_nm
+        for pole in poles_um:
+            # Rounding must not put a pole at an end of the range outside it.
+            if shortest * (1.0 - 1e-9) <= 1e3 * pole <= longest * (1.0 + 1e-9):
+                raise ValueError(f"the formula has a pole at {1e3 * pole:.6g} nm, inside range_nm")
 
 
 class Table(Curve):
@@ -87,3 +135,7 @@ class Table(Curve):
         if tabulated.all():  # the checks of the schema, at the D line: they must not cost the import of SciPy
             return np.asarray(values[place])
         return np.where(tabulated, values[place], self._curve(wavelength_nm))
+
+    def _slope_per_nm(self, wavelength_nm: FloatArray) -> FloatArray:
+        """Return the derivative of the cubics by the wavelength (1/nm) inside the range; NaN of NaN."""
+        return np.asarray(self._curve(wavelength_nm, 1), dtype=np.float64)

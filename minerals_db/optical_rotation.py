@@ -59,10 +59,7 @@ class DrudeRotation(RotatoryPower):
 
     @model_validator(mode="after")
     def _turns_over_its_range(self) -> Self:
-        shortest, longest = (end * 1e-3 for end in self.range_nm)
-        # Rounding must not put the pole at an end of the range outside it.
-        if shortest * (1.0 - 1e-9) <= self.resonance_um <= longest * (1.0 + 1e-9):
-            raise ValueError(f"the formula has a pole at {1e3 * self.resonance_um:.6g} nm, inside range_nm")
+        self._refuse_poles((self.resonance_um,))
         # Between poles it is monotone, so that its ends are its extremes.
         if min(float(self._at(end)) for end in self.range_nm) <= 0.0:
             raise ValueError(
