@@ -10,45 +10,58 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from minerals_db.errors import DataFault, MineralDataError, UnknownMineralError
 
 if TYPE_CHECKING:
+    from minerals_db.absorption import Absorption
     from minerals_db.dispersion import Dispersion
+    from minerals_db.fields import Status
+    from minerals_db.morphology import Cell, Cleavage, Habit
     from minerals_db.optical_rotation import OpticalRotation
-    from minerals_db.schema import Cell, Cleavage, Mineral, Names, Orientation, Source, Status
+    from minerals_db.orientation import MonoclinicOrientation, OrthorhombicOrientation, TriclinicOrientation
+    from minerals_db.schema import Mineral, Names, Source
     from minerals_db.store import load_minerals
 
 __all__ = [
+    "Absorption",
     "Cell",
     "Cleavage",
     "DataFault",
     "Dispersion",
+    "Habit",
     "Mineral",
     "MineralDataError",
+    "MonoclinicOrientation",
     "Names",
     "OpticalRotation",
-    "Orientation",
+    "OrthorhombicOrientation",
     "Source",
     "Status",
+    "TriclinicOrientation",
     "UnknownMineralError",
     "data_digest",
+    "entry_schema",
     "load_minerals",
     "mineral",
     "minerals",
 ]
 
 _LAZY = {
-    "Cell": "minerals_db.schema",
-    "Cleavage": "minerals_db.schema",
+    "Absorption": "minerals_db.absorption",
+    "Cell": "minerals_db.morphology",
+    "Cleavage": "minerals_db.morphology",
     "Dispersion": "minerals_db.dispersion",
+    "Habit": "minerals_db.morphology",
     "Mineral": "minerals_db.schema",
+    "MonoclinicOrientation": "minerals_db.orientation",
     "Names": "minerals_db.schema",
     "OpticalRotation": "minerals_db.optical_rotation",
-    "Orientation": "minerals_db.schema",
+    "OrthorhombicOrientation": "minerals_db.orientation",
     "Source": "minerals_db.schema",
-    "Status": "minerals_db.schema",
+    "Status": "minerals_db.fields",
+    "TriclinicOrientation": "minerals_db.orientation",
     "load_minerals": "minerals_db.store",
 }
 
@@ -61,7 +74,7 @@ def __getattr__(name: str) -> object:
 
 
 def minerals() -> Mapping[str, Mineral]:
-    """Return every mineral of the package.
+    """Return every mineral: those of the package, and those of the folder that ``ISOGYRE_MINERALS_DIR`` names.
 
     Returns
     -------
@@ -73,9 +86,9 @@ def minerals() -> Mapping[str, Mineral]:
     MineralDataError
         Where a data file is faulty; all faults of all files are named.
     """
-    from minerals_db.store import builtin_minerals
+    from minerals_db.library import all_minerals
 
-    return builtin_minerals()
+    return all_minerals()
 
 
 def mineral(mineral_id: str) -> Mineral:
@@ -101,7 +114,20 @@ def mineral(mineral_id: str) -> Mineral:
 
 
 def data_digest() -> str:
-    """Return the SHA-256 (64 hex digits) over the names and bytes of all data files of the package."""
-    from minerals_db.store import builtin_digest
+    """Return the SHA-256 (64 hex digits) over the names and bytes of all data files, the user's own included.
 
-    return builtin_digest()
+    Raises
+    ------
+    MineralDataError
+        Where the user's folder cannot be read.
+    """
+    from minerals_db.library import data_digest as digest
+
+    return digest()
+
+
+def entry_schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of a data file."""
+    from minerals_db.schema import Mineral
+
+    return Mineral.model_json_schema()

@@ -4,15 +4,34 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-__all__ = ["Entry", "Key", "Known", "Number", "Positive", "Status", "Text"]
+__all__ = ["Entry", "Interval", "Key", "Known", "Number", "Positive", "Status", "Text"]
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A finite number. Strict: "1.5" in quotes and `yes` are not numbers."""
 
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]
 """A finite number above zero."""
+
+
+def _pair(value: object) -> object:
+    """Return one number as the interval that holds nothing else."""
+    return (value, value) if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+def _rising(pair: tuple[float, float]) -> tuple[float, float]:
+    if pair[0] > pair[1]:
+        raise ValueError(f"an interval rises, not from {pair[0]:g} to {pair[1]:g}")
+    return pair
+
+
+Interval = Annotated[
+    tuple[Positive, Positive],
+    BeforeValidator(_pair, json_schema_input_type=Positive | tuple[Positive, Positive]),
+    AfterValidator(_rising),
+]
+"""A published range [lowest, highest]; one number stands for itself."""
 
 Text = Annotated[str, Field(strict=True, min_length=1, max_length=2000)]
 """Some text."""

@@ -1,78 +1,153 @@
 """From data files to checked entries.
 
-A folder of ``<id>.yaml`` files and a shared ``sources.yaml`` become ``Mineral`` models. Everything that is wrong in any
-of the files is collected and reported in one error.
+A folder of ``<id>.yaml`` files and the ``sources*.yaml`` that they share become ``Mineral`` models. A variety takes
+from its mineral what it does not state itself. Everything that is wrong in any of the files is collected and reported
+in one error.
 """
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Hashable, Iterator, Mapping
-from functools import cache
-from importlib import resources
 from pathlib import PurePosixPath
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import yaml
 from pydantic import TypeAdapter, ValidationError
 
 from minerals_db.errors import DataFault, MineralDataError
-from minerals_db.schema import Mineral, Source
+from minerals_db.schema import VARIETY_OWN, Mineral, Source
+from minerals_db.yaml_files import faults_of, parse, read_files
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
 
-__all__ = ["SOURCES_FILE", "builtin_digest", "builtin_minerals", "load_minerals"]
+__all__ = ["SOURCES_PREFIX", "load_minerals", "read_minerals"]
 
-SOURCES_FILE = "sources.yaml"
-"""Name of the file, beside the minerals' own, that holds the sources they share."""
+SOURCES_PREFIX = "sources"
+"""How the names of the files begin that hold sources for all minerals, as ``sources-structures.yaml``."""
 
 _SOURCES: TypeAdapter[dict[str, Source]] = TypeAdapter(dict[str, Source])
-# libyaml is about eight times as fast; PyYAML without it reads the same.
-_BASE: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_Fields = dict[Hashable, Any]
 
 
-class _Loader(_BASE):  # type: ignore[misc]  # the base is chosen at run time
-    """A safe YAML loader that refuses a repeated key: YAML would silently keep the last one."""
+def load_minerals(folder: Traversable, base: Mapping[str, Mineral] = MappingProxyType({})) -> Mapping[str, Mineral]:
+    """Read and check a folder of mineral data files.
 
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
-        seen: set[Hashable] = set()
-        for key_node, _ in node.value:
-            key = self.construct_object(key_node, deep=True)
-            if not isinstance(key, Hashable):
-                continue  # the loader itself refuses it below
-            if key in seen:
-                raise yaml.constructor.ConstructorError(None, None, f"repeated key {key!r}", key_node.start_mark)
-            seen.add(key)
-        mapping: dict[Hashable, Any] = super().construct_mapping(node, deep)
-        return mapping
+    Parameters
+    ----------
+    folder : Traversable
+        A ``pathlib.Path`` or package resource holding ``<id>.yaml`` files and, if they share sources, files whose names
+        begin with ``sources``.
+    base : Mapping of str to Mineral
+        Entries that the folder may build upon: their varieties, their sources. None of their ids may stand in it again.
+
+    Returns
+    -------
+    Mapping of str to Mineral
+        Those of the folder by id, sorted by id, read-only.
+
+    Raises
+    ------
+    MineralDataError
+        Where anything in any of the files is wrong: one error with all the faults.
+    OSError
+        Where the folder cannot be read.
+    """
+    return read_minerals(read_files(folder), base)
 
 
-def _parse(name: str, data: bytes, faults: list[DataFault]) -> dict[Hashable, Any] | None:
-    """Return the mapping that a YAML file holds; a fault and None where it holds none."""
-    try:
-        content = yaml.load(data, Loader=_Loader)  # a SafeLoader, as above
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        reason = getattr(error, "problem", None) or str(error)
-        mark = getattr(error, "problem_mark", None)
-        where = f", line {mark.line + 1}" if mark is not None else ""
-        faults.append(DataFault(name, "", f"not YAML: {' '.join(reason.split())}{where}"))
+def read_minerals(files: Mapping[str, bytes], base: Mapping[str, Mineral]) -> Mapping[str, Mineral]:
+    """Return the minerals that files (by name) describe; see `load_minerals`."""
+    faults = [DataFault(name, "", "must end in .yaml") for name in sorted(files) if not name.endswith(".yaml")]
+    shared = _shared_sources(files, base, faults)
+    entries: dict[str, _Fields] = {}
+    for name in sorted(files):
+        if name.endswith(".yaml") and not name.startswith(SOURCES_PREFIX):
+            entry = parse(name, files[name], faults)
+            if entry is not None:
+                entries[name] = entry
+    known = {mineral.id: _fields_of(mineral) for mineral in base.values()}
+    known |= {entry["id"]: entry for entry in entries.values() if isinstance(entry.get("id"), str)}
+    found: dict[str, Mineral] = {}
+    # Minerals before their varieties, which are not told again what is wrong with their mineral.
+    for name, entry in sorted(entries.items(), key=lambda item: ("variety_of" in item[1], item[0])):
+        whole = _with_mineral(name, entry, known, faults)
+        if whole is None:
+            continue
+        taken = _add_sources(name, entry, whole, {**shared, **_own_sources(known, entry)}, faults)
+        try:
+            mineral = Mineral.model_validate(whole)
+        except ValidationError as error:
+            # What is wrong with a shared source, or with the mineral of a variety, has been said once, of its own file.
+            parent = entry.get("variety_of")
+            faulty = parent is not None and parent not in found and parent not in base
+            inherited = set(whole) - set(entry) - {"sources"} if faulty else set()
+            passed = tuple(f"{field}." for field in (*taken, *inherited))
+            faults += [fault for fault in faults_of(name, whole, error) if not f"{fault.field}.".startswith(passed)]
+            continue
+        if mineral.id != PurePosixPath(name).stem:
+            faults.append(DataFault(name, "id", f"must be the name of the file, not {mineral.id!r}"))
+        if mineral.id in base:
+            faults.append(DataFault(name, "id", f"{mineral.id!r} is a built-in mineral: choose another id"))
+        found[mineral.id] = mineral
+    if faults:
+        raise MineralDataError(faults)
+    return MappingProxyType(dict(sorted(found.items())))
+
+
+def _shared_sources(
+    files: Mapping[str, bytes], base: Mapping[str, Mineral], faults: list[DataFault]
+) -> Mapping[Hashable, Any]:
+    """Return the sources that entries may name, by key."""
+    shared: _Fields = {}
+    for mineral in base.values():
+        shared.update({key: source.model_dump(exclude_unset=True) for key, source in mineral.sources.items()})
+    own: dict[str, _Fields] = {}
+    for name in sorted(files):
+        if name.startswith(SOURCES_PREFIX) and name.endswith(".yaml"):
+            content = parse(name, files[name], faults)
+            if content is not None:
+                own[name] = content
+    for name, content in own.items():
+        faults += [DataFault(name, str(key), "stands in another file already") for key in content if key in shared]
+        shared.update(content)
+    for name, content in own.items():
+        faults += [
+            DataFault(name, field, f"unknown source {key!r}")
+            for field, key in _named_sources(content)
+            if key not in shared
+        ]
+        try:
+            _SOURCES.validate_python(content)
+        except ValidationError as error:
+            faults += faults_of(name, content, error)
+    return shared
+
+
+def _fields_of(mineral: Mineral) -> _Fields:
+    """Return what a data file of the whole entry would hold."""
+    return mineral.model_dump(mode="json", exclude_unset=True)  # type: ignore[return-value]  # str is Hashable
+
+
+def _with_mineral(name: str, entry: _Fields, known: Mapping[str, _Fields], faults: list[DataFault]) -> _Fields | None:
+    """Return an entry with what a variety takes from its mineral; None, and a fault, where that is not there."""
+    parent = entry.get("variety_of")
+    if not isinstance(parent, str):
+        return dict(entry)
+    if parent not in known:
+        faults.append(DataFault(name, "variety_of", f"there is no mineral {parent!r}"))
         return None
-    if not isinstance(content, dict):
-        faults.append(DataFault(name, "", "must hold a mapping of fields"))
+    if known[parent].get("variety_of") is not None:
+        faults.append(DataFault(name, "variety_of", f"{parent!r} is a variety itself; name its mineral"))
         return None
-    return content
+    return {**{field: value for field, value in known[parent].items() if field not in VARIETY_OWN}, **entry}
 
 
-def _faults(name: str, error: ValidationError) -> Iterator[DataFault]:
-    """Translate pydantic's list into places of the file and plain words."""
-    for fault in error.errors(include_url=False, include_context=False, include_input=False):
-        place = list(fault["loc"])
-        if place[:1] == ["dispersion"] or place[:2] == ["optical_rotation", "along_axis"]:
-            del place[2:3]  # the name of the curve's model, which is no field
-        reason = {"extra_forbidden": "unknown field", "missing": "missing"}.get(fault["type"], fault["msg"])
-        yield DataFault(name, ".".join(map(str, place)), reason.removeprefix("Value error, "))
+def _own_sources(known: Mapping[str, _Fields], entry: _Fields) -> _Fields:
+    """Return the sources that stand in the entry of a variety's mineral itself."""
+    parent = entry.get("variety_of")
+    own = known.get(parent, {}).get("sources") if isinstance(parent, str) else None
+    return own if isinstance(own, dict) else {}
 
 
 def _named_sources(node: object, path: tuple[str, ...] = ()) -> Iterator[tuple[str, str]]:
@@ -89,103 +164,22 @@ def _named_sources(node: object, path: tuple[str, ...] = ()) -> Iterator[tuple[s
 
 
 def _add_sources(
-    name: str, entry: dict[Hashable, Any], shared: Mapping[str, Any], faults: list[DataFault]
+    name: str, entry: _Fields, whole: _Fields, shared: Mapping[Hashable, Any], faults: list[DataFault]
 ) -> frozenset[str]:
-    """Put the shared sources that an entry names, and those that carry them, beside its own; return their keys."""
+    """Put the sources that an entry names, and those that carry them, beside its own; return where they were put."""
     own = entry.get("sources", {})
     if not isinstance(own, dict):
         return frozenset()  # the schema says so
     told = {**shared, **own}
-    named = list(_named_sources(entry))
-    faults.extend(DataFault(name, field, f"unknown source {key!r}") for field, key in named if key not in told)
+    named = list(_named_sources({field: value for field, value in whole.items() if field != "sources"}))
+    named += list(_named_sources({"sources": own}))
+    inherited = set(whole) - set(entry)
+    faults.extend(
+        DataFault(name, field, f"unknown source {key!r}")
+        for field, key in named
+        if key not in told and field.split(".")[0] not in inherited
+    )
     used = set(own) | {key for _, key in named if key in told}
     used |= {via for key in used for _, via in _named_sources(told[key]) if via in told}
-    entry["sources"] = {key: told[key] for key in sorted(used, key=str)}
-    return frozenset(key for key in used if key not in own)
-
-
-def _read_minerals(files: Mapping[str, bytes]) -> Mapping[str, Mineral]:
-    """Return the minerals that the files (by name) describe."""
-    faults = [DataFault(name, "", "must end in .yaml") for name in sorted(files) if not name.endswith(".yaml")]
-    shared = _parse(SOURCES_FILE, files[SOURCES_FILE], faults) if SOURCES_FILE in files else None
-    sources: dict[str, Any] = {}
-    if shared is not None:
-        sources = {str(key): source for key, source in shared.items()}
-        faults += [
-            DataFault(SOURCES_FILE, field, f"unknown source {key!r}")
-            for field, key in _named_sources(sources)
-            if key not in sources
-        ]
-        try:
-            _SOURCES.validate_python(sources)
-        except ValidationError as error:
-            faults += _faults(SOURCES_FILE, error)
-    found: dict[str, Mineral] = {}
-    for name in sorted(files):
-        if name == SOURCES_FILE or not name.endswith(".yaml"):
-            continue
-        entry = _parse(name, files[name], faults)
-        if entry is None:
-            continue
-        added = tuple(f"sources.{key}." for key in _add_sources(name, entry, sources, faults))
-        try:
-            mineral = Mineral.model_validate(entry)
-        except ValidationError as error:
-            # What is wrong with a shared source has been said once, of its own file.
-            faults += [fault for fault in _faults(name, error) if not f"{fault.field}.".startswith(added)]
-            continue
-        if mineral.id != PurePosixPath(name).stem:
-            faults.append(DataFault(name, "id", f"must be the name of the file, not {mineral.id!r}"))
-        found[mineral.id] = mineral
-    if faults:
-        raise MineralDataError(faults)
-    return MappingProxyType(dict(sorted(found.items())))
-
-
-def _read_files(folder: Traversable) -> dict[str, bytes]:
-    return {file.name: file.read_bytes() for file in folder.iterdir() if file.name.endswith((".yaml", ".yml"))}
-
-
-def load_minerals(folder: Traversable) -> Mapping[str, Mineral]:
-    """Read and check a folder of mineral data files.
-
-    Parameters
-    ----------
-    folder : Traversable
-        A ``pathlib.Path`` or package resource holding ``<id>.yaml`` files and, if they share sources, ``sources.yaml``.
-
-    Returns
-    -------
-    Mapping of str to Mineral
-        By id, sorted by id, read-only.
-
-    Raises
-    ------
-    MineralDataError
-        Where anything in any of the files is wrong: one error with all the faults.
-    OSError
-        Where the folder cannot be read.
-    """
-    return _read_minerals(_read_files(folder))
-
-
-@cache
-def _builtin_files() -> Mapping[str, bytes]:
-    """Return the package's data files, read once so that the minerals and the digest speak of the same bytes."""
-    return MappingProxyType(_read_files(resources.files("minerals_db") / "data"))
-
-
-@cache
-def builtin_minerals() -> Mapping[str, Mineral]:
-    """Return the package's minerals; read once per process."""
-    return _read_minerals(_builtin_files())
-
-
-@cache
-def builtin_digest() -> str:
-    """Return the SHA-256 over names and bytes of the package's data files."""
-    digest = hashlib.sha256()
-    for name, data in sorted(_builtin_files().items()):
-        digest.update(f"{name}\0{len(data)}\0".encode())
-        digest.update(data)
-    return digest.hexdigest()
+    whole["sources"] = {key: told[key] for key in sorted(used, key=str)}
+    return frozenset(f"sources.{key}" for key in used if key not in own)

@@ -18,7 +18,10 @@ __all__ = [
     "PointGroup",
 ]
 
-CrystalSystem = Literal["cubic", "tetragonal", "hexagonal", "trigonal", "orthorhombic", "monoclinic", "triclinic"]
+CrystalSystem = Literal[
+    "cubic", "tetragonal", "hexagonal", "trigonal", "orthorhombic", "monoclinic", "triclinic", "amorphous"
+]
+"""The seven crystal systems, and glass, which has none."""
 OpticalClass = Literal["isotropic", "uniaxial", "biaxial"]
 PointGroup = Literal[
     "1", "-1",
@@ -39,6 +42,7 @@ POINT_GROUPS: Mapping[CrystalSystem, tuple[PointGroup, ...]] = MappingProxyType(
         "trigonal": ("3", "-3", "32", "3m", "-3m"),
         "hexagonal": ("6", "-6", "6/m", "622", "6mm", "-6m2", "6/mmm"),
         "cubic": ("23", "m-3", "432", "-43m", "m-3m"),
+        "amorphous": (),
     }
 )
 """The 32 crystal classes by system (International Tables for Crystallography A, table 3.2.1.4)."""
@@ -52,23 +56,26 @@ OPTICAL_CLASS: Mapping[CrystalSystem, OpticalClass] = MappingProxyType(
         "orthorhombic": "biaxial",
         "monoclinic": "biaxial",
         "triclinic": "biaxial",
+        "amorphous": "isotropic",
     }
 )
 """The shape of the indicatrix that the symmetry of the system leaves (Neumann's principle)."""
 
-PRINCIPAL_AXES: Mapping[CrystalSystem, frozenset[str]] = MappingProxyType(
+PRINCIPAL_AXES: Mapping[CrystalSystem, tuple[str, ...]] = MappingProxyType(
     {
-        "cubic": frozenset({"n"}),
-        "tetragonal": frozenset({"o", "e"}),
-        "hexagonal": frozenset({"o", "e"}),
-        "trigonal": frozenset({"o", "e"}),
+        "amorphous": ("n",),
+        "cubic": ("n",),
+        "tetragonal": ("o", "e"),
+        "hexagonal": ("o", "e"),
+        "trigonal": ("o", "e"),
         # Keyed by crystal directions: which of them is X, Y or Z is a question of the wavelength.
-        "orthorhombic": frozenset({"a", "b", "c"}),
+        "orthorhombic": ("a", "b", "c"),
+        # Their directions stand in `orientation`; they are named by their order at the D line.
+        "monoclinic": ("alpha", "beta", "gamma"),
+        "triclinic": ("alpha", "beta", "gamma"),
     }
 )
-"""Names of the principal indices. Monoclinic and triclinic ones need a rotation against the lattice, which the schema
-cannot hold yet."""
-
+"""Names of the principal curves, in the order in which the optics takes them."""
 
 GYROTROPIC_ALONG_AXIS: frozenset[PointGroup] = frozenset({"3", "32", "4", "422", "6", "622"})
 """The classes of uniaxial crystals that turn the plane of polarization along their optic axis (Nye, Physical Properties

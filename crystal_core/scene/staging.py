@@ -143,7 +143,7 @@ def cleavage_pole_deg(mineral: minerals_db.Mineral) -> float:
         The mineral is not trigonal or has no such cleavage.
     """
     forms = [c.hkl for c in mineral.cleavage if c.hkl[1] == 0 and c.hkl[0] != 0 and c.hkl[2] != 0]
-    if mineral.system != "trigonal" or not forms:
+    if mineral.system != "trigonal" or mineral.cell is None or not forms:
         raise InputError.at(
             "/specimen/shape/cut", f"{mineral.id} does not cleave into a rhombohedron; cut it as a block"
         )
