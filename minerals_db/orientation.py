@@ -110,14 +110,13 @@ class MonoclinicOrientation(Known):
 
         Returns
         -------
-        float64 array, shape (3, 3) or (3, 3, N)
+        float64 array, shape (3, 3), or (3, 3, N) where the axes turn with N wavelengths
             A right-handed frame: row i is the direction of α, β, γ.
         """
-        wavelengths = np.asarray(wavelength_nm, dtype=np.float64)
         # Angles from z = c* towards x = a, that is about +y = +b: a lies at 90°, c at 90° − β.
         start = 90.0 if self.from_axis == "a" else 90.0 - beta_deg
-        turn = self.angle_deg.degrees(wavelengths) if isinstance(self.angle_deg, TurningAngle) else self.angle_deg
-        angle = np.broadcast_to(np.radians(start + turn), wavelengths.shape)
+        turn = self.angle_deg.degrees(wavelength_nm) if isinstance(self.angle_deg, TurningAngle) else self.angle_deg
+        angle = np.asarray(np.radians(start + turn))
         zero = np.zeros_like(angle)
         along_b = np.stack((zero, zero + 1.0, zero))
         known = np.stack((np.sin(angle), zero, np.cos(angle)))
@@ -162,23 +161,21 @@ class TriclinicOrientation(Known):
             raise ValueError(f"alpha and gamma must be at right angles, not at {between:.2f} degrees")
         return self
 
-    def axes(self, wavelength_nm: npt.ArrayLike) -> FloatArray:
-        """Return the directions α, β, γ in the crystal frame, the same for all wavelengths (nm), shape () or (N,).
+    def axes(self) -> FloatArray:
+        """Return the directions α, β, γ in the crystal frame.
 
         The rounding of the two directions is shared between them, so that the frame is orthonormal.
 
         Returns
         -------
-        float64 array, shape (3, 3) or (3, 3, N)
+        float64 array, shape (3, 3)
             A right-handed frame: row i is the direction of α, β, γ.
         """
         alpha, gamma = self.alpha.unit(), self.gamma.unit()
         total, difference = alpha + gamma, alpha - gamma  # at right angles, both vectors being units
         total, difference = total / np.sqrt(np.dot(total, total)), difference / np.sqrt(np.dot(difference, difference))
         alpha, gamma = (total + difference) / math.sqrt(2.0), (total - difference) / math.sqrt(2.0)
-        rows = np.stack((alpha, np.cross(gamma, alpha), gamma))
-        shape = np.shape(wavelength_nm)
-        return np.array(np.broadcast_to(rows.reshape(3, 3, *(1,) * len(shape)), (3, 3, *shape)))
+        return np.stack((alpha, np.cross(gamma, alpha), gamma))
 
 
 Orientation = OrthorhombicOrientation | MonoclinicOrientation | TriclinicOrientation

@@ -160,7 +160,7 @@ class Mineral(Entry):
 
         Returns
         -------
-        float64 array, shape (3, 3) or (3, 3, N)
+        float64 array, shape (3, 3), or (3, 3, N) where the axes turn with N wavelengths
             A right-handed frame: row i is the direction of the i-th curve of a biaxial crystal. Uniaxial: the last row
             is the optic axis, along c. Isotropic: any frame serves, and the crystal's own is given.
         """
@@ -180,9 +180,8 @@ class Mineral(Entry):
             assert self.cell is not None  # every monoclinic entry has one
             return orientation.axes(self.cell.beta_deg, wavelength_nm)
         if isinstance(orientation, TriclinicOrientation):
-            return orientation.axes(wavelength_nm)
-        shape = np.shape(wavelength_nm)
-        return np.array(np.broadcast_to(np.eye(3).reshape(3, 3, *(1,) * len(shape)), (3, 3, *shape)))
+            return orientation.axes()
+        return np.eye(3)
 
     @field_validator("point_group")
     @classmethod

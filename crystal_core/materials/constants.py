@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,22 +11,14 @@ from crystal_core.errors import InputError
 from crystal_core.optics import Medium
 from minerals_db import Mineral
 
-__all__ = ["SODIUM_D_NM", "gyration", "medium", "principal_indices"]
+__all__ = ["absorption_coefficients", "gyration", "medium", "principal_indices"]
 
 Real = NDArray[np.float64]
-
-SODIUM_D_NM = 589.3
-"""Mean of the sodium doublet, at which mineralogists quote indices."""
 
 ROTATION_TOLERANCE = 1e-9
 """How far R Rᵀ may stand from 1: far above rounding, far below any direction known by measurement."""
 
 _ALONG_AND_ACROSS = np.diag((0.0, 0.0, 1.0)), np.diag((1.0, 1.0, 0.0))
-
-_CURVES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"isotropic": ("n",), "uniaxial": ("o", "e"), "biaxial": ("a", "b", "c")}
-)
-"""Names of the principal curves by optical class. Biaxial entries are orthorhombic: the schema takes no others."""
 
 
 def principal_indices(mineral: Mineral, wavelength_nm: ArrayLike) -> tuple[Real, ...]:
@@ -43,11 +34,48 @@ def principal_indices(mineral: Mineral, wavelength_nm: ArrayLike) -> tuple[Real,
     Returns
     -------
     tuple of float64 arrays, shape (...) each
-        (n,) of an isotropic, (n_o, n_e) of a uniaxial mineral, (n_a, n_b, n_c) of an orthorhombic one for waves that
-        vibrate along the axes a, b, c of its cell; which of them is α, β or γ may change with the wavelength.
+        (n,) of an isotropic, (n_o, n_e) of a uniaxial mineral; of a biaxial one those for waves that vibrate along the
+        rows of `mineral.principal_axes`: along a, b, c of an orthorhombic cell, else along what is α, β, γ at the D
+        line. Which of them is smallest may change with the wavelength.
     """
     wavelengths = np.asarray(wavelength_nm, np.float64)
-    return tuple(mineral.dispersion[axis].index(wavelengths) for axis in _CURVES[mineral.optical_class])
+    return tuple(curve.index(wavelengths) for curve in mineral.dispersion.values())
+
+
+def absorption_coefficients(
+    mineral: Mineral, wavelength_nm: ArrayLike, concentrations: Mapping[str, float] | None = None
+) -> tuple[Real, ...] | None:
+    """Return the principal absorption coefficients of a mineral, in the order of `principal_indices`.
+
+    Parameters
+    ----------
+    mineral : Mineral
+        Its entry.
+    wavelength_nm : array_like, shape (...)
+        Vacuum wavelengths, nm.
+    concentrations : Mapping of str to float, optional
+        Weight percent of the chromophores of the entry, by their keys; those left out stay as the entry has them.
+
+    Returns
+    -------
+    tuple of float64 arrays, shape (...) each, or None
+        Natural, of the intensity, mm⁻¹, for waves that vibrate along the rows of `mineral.absorption_axes`; None if
+        the entry knows of no absorption.
+
+    Raises
+    ------
+    InputError
+        A chromophore that the entry does not have, or a negative concentration.
+    """
+    absorption = mineral.absorption
+    if absorption is None:
+        if concentrations:
+            raise InputError.at("/concentrations", f"{mineral.id} has no chromophores")
+        return None
+    try:
+        return tuple(absorption.per_mm(axis, wavelength_nm, concentrations) for axis in mineral.dispersion)
+    except ValueError as error:
+        raise InputError.at("/concentrations", str(error)) from None
 
 
 def gyration(mineral: Mineral, wavelength_nm: ArrayLike) -> Real | None:
@@ -82,8 +110,13 @@ def gyration(mineral: Mineral, wavelength_nm: ArrayLike) -> Real | None:
     return np.asarray(np.multiply.outer(along + rotation.across_to_along.ratio * across, g33))
 
 
-def medium(mineral: Mineral, wavelength_nm: ArrayLike, rotation: ArrayLike | None = None) -> Medium:
-    """Return the medium of a mineral that is turned into the world, with its gyration tensor if it is optically active.
+def medium(
+    mineral: Mineral,
+    wavelength_nm: ArrayLike,
+    rotation: ArrayLike | None = None,
+    concentrations: Mapping[str, float] | None = None,
+) -> Medium:
+    """Return the medium of a mineral that is turned into the world, with its absorption and its gyration.
 
     Parameters
     ----------
@@ -93,27 +126,34 @@ def medium(mineral: Mineral, wavelength_nm: ArrayLike, rotation: ArrayLike | Non
         Vacuum wavelength of each ray, nm.
     rotation : array_like, shape (3, 3), optional
         R of v_world = R v_crystal, a proper rotation; the crystal frame has x ∥ a, z ∥ c*, y = z × x. The optic axis of
-        a uniaxial crystal is R's third column, the axes a, b, c of an orthorhombic one are its three columns. The
-        identity if left out.
+        a uniaxial crystal is R's third column; R takes the rows of `mineral.principal_axes` to the axes of the medium.
+        The identity if left out.
+    concentrations : Mapping of str to float, optional
+        See `absorption_coefficients`.
 
     Raises
     ------
     InputError
-        A wavelength that is not finite and positive, or a rotation that is none. A mirror image is no rotation: the
-        crystal would be one of the other hand.
+        A wavelength that is not finite and positive, or a rotation that is none: a mirror image is no rotation, the
+        crystal would be one of the other hand. Whatever `absorption_coefficients` does not take.
     """
     wavelengths = np.asarray(wavelength_nm, np.float64)
     if wavelengths.ndim > 1 or not np.all(np.isfinite(wavelengths) & (wavelengths > 0)):
         raise InputError.at("/wavelength_nm", "wavelengths must be finite and positive, shape () or (N,)")
     turned = _rotation(rotation)
     indices = principal_indices(mineral, wavelengths)
+    absorbed = absorption_coefficients(mineral, wavelengths, concentrations)
     if len(indices) == 1:
-        return Medium.isotropic(indices[0])
+        return Medium.isotropic(indices[0], None if absorbed is None else absorbed[0])
     if len(indices) == 2:
-        inactive = Medium.uniaxial(indices[0], indices[1], turned[:, 2])
+        pair = None if absorbed is None else (absorbed[0], absorbed[1])
+        uniaxial = Medium.uniaxial(indices[0], indices[1], turned[:, 2], pair)
         tensor = gyration(mineral, wavelengths)
-        return inactive if tensor is None else inactive.active(_turned(tensor, turned))
-    return Medium.biaxial(indices, turned.T)
+        return uniaxial if tensor is None else uniaxial.active(_turned(tensor, turned))
+    biaxial = Medium.biaxial(indices, _in_world(mineral.principal_axes(wavelengths), turned))
+    if absorbed is None:
+        return biaxial
+    return biaxial.absorbing(absorbed, _in_world(mineral.absorption_axes(wavelengths), turned))
 
 
 def _rotation(value: ArrayLike | None) -> Real:
@@ -124,6 +164,11 @@ def _rotation(value: ArrayLike | None) -> Real:
     if not sound or np.abs(matrix @ matrix.T - np.eye(3)).max() > ROTATION_TOLERANCE or np.linalg.det(matrix) < 0:
         raise InputError.at("/rotation", "the rotation must be a proper one: orthonormal rows, determinant +1, (3, 3)")
     return matrix
+
+
+def _in_world(axes: Real, rotation: Real) -> Real:
+    """Return the rows of a frame in the world: row i becomes R · row i."""
+    return np.asarray(np.einsum("ij...,kj->ik...", axes, rotation))
 
 
 def _turned(tensor: Real, rotation: Real) -> Real:
