@@ -20,6 +20,7 @@ from pydantic import Field, model_validator
 
 from minerals_db.curve import Curve, FloatArray, Table
 from minerals_db.fields import Entry, Key, Known, Positive, Text
+from minerals_db.orientation import FreeOrientation
 
 __all__ = [
     "Absorption",
@@ -162,12 +163,18 @@ class Absorption(Entry):
         The crystal measured, or what the numbers were made to look like.
     chromophores : mapping of str to Chromophore
         By key.
+    frame : MonoclinicOrientation or TriclinicOrientation, optional
+        How the axes lie in the crystal, where they are not those of the indicatrix.
     parts : tuple of Part
         What adds up; all with the same axes.
     """
 
     sample: Text
     chromophores: dict[Key, Chromophore] = Field(default_factory=dict)
+    frame: FreeOrientation | None = Field(
+        None,
+        description="Of the principal axes of absorption, in a monoclinic or triclinic crystal; None: the indicatrix",
+    )
     parts: tuple[Part, ...] = Field(min_length=1)
 
     @property

@@ -237,6 +237,16 @@ def test_wrong_stones_are_refused(parts: list[dict[str, Any]], fields: dict[str,
         absorption(*parts, **fields)
 
 
+def test_its_axes_may_differ_from_those_of_the_indicatrix() -> None:
+    turned = {"parallel_to_b": "beta", "direction": "gamma", "from_axis": "c", "angle_deg": 30.0, **KNOWN}
+    stone = absorption(part("all", alpha=GAUSSIAN, beta=GAUSSIAN, gamma=EDGE), frame=turned)
+    assert stone.frame is not None
+    assert stone.frame.model_dump(exclude_none=True) == turned
+    fixed = {"alpha": "a", "beta": "b", "gamma": "c", **KNOWN}  # symmetry leaves an orthorhombic crystal no choice
+    with pytest.raises(ValidationError):
+        absorption(part("all", a=GAUSSIAN, b=GAUSSIAN, c=EDGE), frame=fixed)
+
+
 AMOUNT = st.floats(0.0, 100.0)
 WAVENUMBER = st.floats(1000.0, 50000.0)
 WIDTH = st.floats(10.0, 20000.0)
