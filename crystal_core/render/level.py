@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from crystal_core.optics import Coherency, Medium, transverse_frame
+from crystal_core.optics import Coherency, transverse_frame
 from crystal_core.optics.arrays import columns, dot
 from crystal_core.render.illumination import Illumination
 from crystal_core.render.isotropic_events import IsotropicEvents
@@ -179,7 +179,5 @@ def _importance(scene: StagedScene, direction: Real) -> Coherency:
 
 
 def _events(specimen: StagedSpecimen, wavelength_nm: Real) -> Events:
-    indices = specimen.indices(wavelength_nm)
-    if specimen.is_isotropic:
-        return IsotropicEvents(specimen, Medium.isotropic(indices[0]))
-    return UniaxialEvents(specimen, Medium.uniaxial(indices[0], indices[1], specimen.axis))
+    medium = specimen.medium(wavelength_nm)
+    return IsotropicEvents(specimen, medium) if medium.is_isotropic else UniaxialEvents(specimen, medium)

@@ -13,7 +13,8 @@ from crystal_core.errors import InputError
 from crystal_core.geometry import ConvexPolyhedron, FaceFinder, block, face_finder, rhombohedron
 from crystal_core.geometry.cuts import rotation_about_z
 from crystal_core.geometry.lattice import direct_basis, face_normal
-from crystal_core.materials import principal_indices
+from crystal_core.materials import absorption_coefficients, principal_indices
+from crystal_core.optics import Medium
 from crystal_core.scene.description import Camera, Page, Scene, Shape
 from crystal_core.scene.printed_page import printed_digits
 from crystal_core.scene.texture import MAX_PIXELS, Texture, decode_texture, read_asset
@@ -58,14 +59,18 @@ class StagedSpecimen:
     finder: FaceFinder
     axis: Real
 
-    @property
-    def is_isotropic(self) -> bool:
-        """Whether the crystal has one index."""
-        return self.mineral.optical_class == "isotropic"
-
     def indices(self, wavelength_nm: ArrayLike) -> tuple[Real, ...]:
         """Return the principal indices at the wavelengths: (n,) or (n_o, n_e)."""
         return principal_indices(self.mineral, wavelength_nm)
+
+    def medium(self, wavelength_nm: ArrayLike) -> Medium:
+        """Return the crystal's medium at the wavelengths, absorption included; optical activity is left out."""
+        absorbed = absorption_coefficients(self.mineral, wavelength_nm)
+        indices = self.indices(wavelength_nm)
+        if len(indices) == 1:
+            return Medium.isotropic(indices[0], None if absorbed is None else absorbed[0])
+        pair = None if absorbed is None else (absorbed[0], absorbed[1])
+        return Medium.uniaxial(indices[0], indices[1], self.axis, pair)
 
 
 @dataclass(frozen=True)
