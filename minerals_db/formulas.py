@@ -111,131 +111,111 @@ class _PlainFormula(_Formula):
         return np.ones_like(total)
 
 
-class Sellmeier1(SquaredFormula):
-    """n² = 1 + offset + Σ B λ²/(λ² − C²); formula 1 of refractiveindex.info."""
+class _OverOne(_Formula):
+    """A formula for what an index has over that of empty space."""
 
-    model: Literal["sellmeier-1"]
-    offset: Number = 0.0
-    terms: tuple[ResonanceUm, ...] = Field(min_length=1)
+    offset: Number = Field(0.0, description="Added to the terms and to 1")
 
     @property
     def _constant(self) -> float:
         return 1.0 + self.offset
 
-    @property
-    def _terms(self) -> tuple[Term, ...]:
-        return self.terms
 
+class _OverConstant(_Formula):
+    """A formula with a constant of its own."""
 
-class Sellmeier2(SquaredFormula):
-    """n² = 1 + offset + Σ B λ²/(λ² − C); formula 2 of refractiveindex.info."""
-
-    model: Literal["sellmeier-2"]
-    offset: Number = 0.0
-    terms: tuple[ResonanceUm2, ...] = Field(min_length=1)
-
-    @property
-    def _constant(self) -> float:
-        return 1.0 + self.offset
-
-    @property
-    def _terms(self) -> tuple[Term, ...]:
-        return self.terms
-
-
-class Polynomial(SquaredFormula):
-    """n² = constant + Σ A λᵖ; formula 3 of refractiveindex.info."""
-
-    model: Literal["polynomial"]
-    constant: Number
-    powers: tuple[Power, ...] = Field(min_length=1)
+    constant: Number = Field(description="Added to the terms")
 
     @property
     def _constant(self) -> float:
         return self.constant
+
+
+class Sellmeier1(SquaredFormula, _OverOne):
+    """n² = 1 + offset + Σ B λ²/(λ² − C²); formula 1 of refractiveindex.info."""
+
+    model: Literal["sellmeier-1"]
+    terms: tuple[ResonanceUm, ...] = Field(min_length=1)
+
+    @property
+    def _terms(self) -> tuple[Term, ...]:
+        return self.terms
+
+
+class Sellmeier2(SquaredFormula, _OverOne):
+    """n² = 1 + offset + Σ B λ²/(λ² − C); formula 2 of refractiveindex.info."""
+
+    model: Literal["sellmeier-2"]
+    terms: tuple[ResonanceUm2, ...] = Field(min_length=1)
+
+    @property
+    def _terms(self) -> tuple[Term, ...]:
+        return self.terms
+
+
+class Polynomial(SquaredFormula, _OverConstant):
+    """n² = constant + Σ A λᵖ; formula 3 of refractiveindex.info."""
+
+    model: Literal["polynomial"]
+    powers: tuple[Power, ...] = Field(min_length=1)
 
     @property
     def _terms(self) -> tuple[Term, ...]:
         return self.powers
 
 
-class ResonancesAndPowers(SquaredFormula):
+class ResonancesAndPowers(SquaredFormula, _OverConstant):
     """n² = constant + Σ B λᵖ/(λ² − C) + Σ A λᵖ; formula 4 of refractiveindex.info."""
 
     model: Literal["resonances-and-powers"]
-    constant: Number
     resonances: tuple[PowerResonance, ...] = ()
     powers: tuple[Power, ...] = ()
-
-    @property
-    def _constant(self) -> float:
-        return self.constant
 
     @property
     def _terms(self) -> tuple[Term, ...]:
         return (*self.resonances, *self.powers)
 
 
-class Cauchy(_PlainFormula):
+class Cauchy(_PlainFormula, _OverConstant):
     """n = constant + Σ A λᵖ; formula 5 of refractiveindex.info."""
 
     model: Literal["cauchy"]
-    constant: Number
     powers: tuple[Power, ...] = ()
-
-    @property
-    def _constant(self) -> float:
-        return self.constant
 
     @property
     def _terms(self) -> tuple[Term, ...]:
         return self.powers
 
 
-class Gas(_PlainFormula):
+class Gas(_PlainFormula, _OverOne):
     """n = 1 + offset + Σ B/(C − λ⁻²); formula 6 of refractiveindex.info."""
 
     model: Literal["gas"]
-    offset: Number = 0.0
     terms: tuple[GasResonance, ...] = Field(min_length=1)
-
-    @property
-    def _constant(self) -> float:
-        return 1.0 + self.offset
 
     @property
     def _terms(self) -> tuple[Term, ...]:
         return self.terms
 
 
-class Herzberger(_PlainFormula):
-    """n = constant + A L + B L² + Σ C λᵖ, L = 1/(λ² − 0.028), p 2, 4, 6; formula 7 of refractiveindex.info."""
+class Herzberger(_PlainFormula, _OverConstant):
+    """n = constant + A L + B L² + Σ C λᵖ, L = 1/(λ² − 0.028); formula 7 of refractiveindex.info, where p is 2, 4, 6."""
 
     model: Literal["herzberger"]
-    constant: Number
     resonance: HerzbergerResonance
     powers: tuple[Power, ...] = ()
-
-    @property
-    def _constant(self) -> float:
-        return self.constant
 
     @property
     def _terms(self) -> tuple[Term, ...]:
         return (self.resonance, *self.powers)
 
 
-class Retro(_Formula):
-    """(n² − 1)/(n² + 2) = constant + B λ²/(λ² − C) + Σ A λᵖ, p 2; formula 8 of refractiveindex.info."""
+class Retro(_OverConstant):
+    """(n² − 1)/(n² + 2) = constant + B λ²/(λ² − C) + Σ A λᵖ; formula 8 of refractiveindex.info, where p is 2."""
 
     model: Literal["retro"]
-    constant: Number
     resonance: ResonanceUm2
     powers: tuple[Power, ...] = ()
-
-    @property
-    def _constant(self) -> float:
-        return self.constant
 
     @property
     def _terms(self) -> tuple[Term, ...]:
@@ -249,17 +229,12 @@ class Retro(_Formula):
         return 1.5 / (self._index_of(total) * rest * rest)
 
 
-class Exotic(SquaredFormula):
-    """n² = constant + B/(λ² − C) + S (λ − M)/((λ − M)² + W); formula 9 of refractiveindex.info."""
+class Exotic(SquaredFormula, _OverConstant):
+    """n² = constant + B λᵖ/(λ² − C) + S (λ − M)/((λ − M)² + W); formula 9 of refractiveindex.info, where p is 0."""
 
     model: Literal["exotic"]
-    constant: Number
-    resonance: PowerResonance = Field(description="Of power 0")
+    resonance: PowerResonance
     line: LineResonance
-
-    @property
-    def _constant(self) -> float:
-        return self.constant
 
     @property
     def _terms(self) -> tuple[Term, ...]:
