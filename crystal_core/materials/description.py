@@ -2,43 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema, field_validator
-from pydantic_core import PydanticCustomError
 
 import minerals_db
 from crystal_core.errors import InputError
 from crystal_core.materials.constants import medium as mineral_medium
+from crystal_core.materials.written_frames import Matrix, is_right_handed, matrix_of, orthonormal, wrong
 from crystal_core.optics import Medium
 from crystal_core.optics.arrays import dot
 
-__all__ = ["UNIT_TOLERANCE", "Family", "MediumDescription", "Number", "Vector", "joint_medium", "wrong"]
+__all__ = ["Family", "MediumDescription", "joint_medium"]
 
 Real = NDArray[np.float64]
 
-UNIT_TOLERANCE = 1e-6
-"""How far written axes may stand from orthonormal (each |axis|² and each cosine), and |normal| from 1: decimals of
-seven digits pass. The nearest orthonormal frame is taken; a frame that is good to 1e-12 is taken as it stands."""
-
-_AS_IT_STANDS = 1e-12
 _SYMMETRY_TOLERANCE = 1e-12
 _CLASSES = {"isotropic": 1, "uniaxial": 2, "biaxial": 3}
 _IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-"""A finite number; no text, no truth value."""
-Vector = tuple[Number, Number, Number]
-Matrix = tuple[Vector, Vector, Vector]
-
-
-def wrong(message: str) -> PydanticCustomError:
-    """Return the error that a validator raises; `message` says what would be right."""
-    return PydanticCustomError("description", "{message}", {"message": message})
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,28 +38,15 @@ class Family:
         Id of the mineral, None where indices are given.
     absorbing, active : bool
         Whether absorption or gyration is given (a mineral's entry tells by itself: False).
+    concentrations : tuple of pairs
+        Chromophores of the mineral whose weight percent is given, sorted by key.
     """
 
     indices: int
     mineral: str | None
     absorbing: bool
     active: bool
-
-
-def _orthonormal(frame: Matrix, what: str) -> Matrix:
-    """Return the nearest orthonormal frame of the same handedness."""
-    a, b, c = frame
-    gram = (_dot(a, a) - 1, _dot(b, b) - 1, _dot(c, c) - 1, _dot(a, b), _dot(b, c), _dot(c, a))
-    error = max(map(abs, gram))
-    if not error <= UNIT_TOLERANCE:
-        raise wrong(f"{what} must be orthonormal: unit vectors at right angles, to {UNIT_TOLERANCE:g}")
-    if error <= _AS_IT_STANDS:
-        return frame
-    matrix = np.array(frame)
-    for _ in range(2):  # Newton's iteration for the orthogonal polar factor (Higham, Functions of Matrices, 2008, §8.3)
-        matrix = 1.5 * matrix - 0.5 * matrix @ matrix.T @ matrix
-    rows: list[list[float]] = matrix.tolist()
-    return _matrix(rows)
+    concentrations: tuple[tuple[str, float], ...] = ()
 
 
 def _gyration(value: object) -> object:
@@ -124,6 +96,9 @@ class MediumDescription(BaseModel):
         default=None,
         description="R of v_world = R v_crystal, a proper rotation (crystal frame: x ∥ a, z ∥ c*, y = z × x) "
         "[default: the identity]",
+    )
+    concentrations: Mapping[str, Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=100)]] | None = (
+        Field(default=None, description="Weight percent of chromophores of the mineral [default: those of its entry]")
     )
     indices: (
         Annotated[
@@ -175,10 +150,24 @@ class MediumDescription(BaseModel):
             return None
         if info.data.get("mineral", "") is None:
             raise wrong("turns a mineral; of a medium given by its indices, turn the axes")
-        turned = _orthonormal(value, "the rotation")
-        if not _right_handed(turned):
+        turned = orthonormal(value, "the rotation")
+        if not is_right_handed(turned):
             raise wrong("must be a proper rotation: its determinant is -1, that of a mirror image")
         return turned
+
+    @field_validator("concentrations")
+    @classmethod
+    def _chromophores(cls, value: Mapping[str, float] | None, info: ValidationInfo) -> Mapping[str, float] | None:
+        if value is None or "mineral" not in info.data:
+            return value
+        if info.data["mineral"] is None:
+            raise wrong("those of a mineral; a medium given by its indices has its absorption_per_mm")
+        absorption = minerals_db.mineral(info.data["mineral"]).absorption
+        known = () if absorption is None else tuple(absorption.chromophores)
+        if not set(value) <= set(known):
+            has = f"has the chromophores {', '.join(known)}" if known else "has none"
+            raise wrong(f"{info.data['mineral']} {has}, not {', '.join(sorted(set(value) - set(known)))}")
+        return value
 
     @field_validator("indices")
     @classmethod
@@ -201,7 +190,7 @@ class MediumDescription(BaseModel):
         if np.abs(g - g.T).max() > _SYMMETRY_TOLERANCE:
             raise wrong("must be symmetric")
         rows: list[list[float]] = (0.5 * (g + g.T)).tolist()
-        return _matrix(rows)
+        return matrix_of(rows)
 
     @field_validator("axes")
     @classmethod
@@ -211,8 +200,8 @@ class MediumDescription(BaseModel):
             if len(info.data.get("indices") or ()) > 1:
                 raise wrong("required: the medium is anisotropic")
             return None
-        frame = _orthonormal(value, "the axes")
-        if info.data.get("gyration") is not None and not _right_handed(frame):
+        frame = orthonormal(value, "the axes")
+        if info.data.get("gyration") is not None and not is_right_handed(frame):
             raise wrong("must be right-handed, as a gyration is given")
         return frame
 
@@ -232,13 +221,14 @@ class MediumDescription(BaseModel):
     @classmethod
     def _absorption_frame(cls, value: Matrix | None, info: ValidationInfo) -> Matrix | None:
         _refuse_beside_mineral(value, info)
-        return None if value is None else _orthonormal(value, "the absorption axes")
+        return None if value is None else orthonormal(value, "the absorption axes")
 
     @property
     def family(self) -> Family:
         """What this medium shares with others of `joint_medium`."""
         if self.mineral is not None:
-            return Family(_CLASSES[minerals_db.mineral(self.mineral).optical_class], self.mineral, False, False)
+            kind = _CLASSES[minerals_db.mineral(self.mineral).optical_class]
+            return Family(kind, self.mineral, False, False, tuple(sorted((self.concentrations or {}).items())))
         return Family(
             len(self.indices or ()), None, any(a > 0 for a in self.absorption_per_mm or ()), self.gyration is not None
         )
@@ -269,7 +259,7 @@ class MediumDescription(BaseModel):
         """
         wavelengths = _wavelengths(wavelength_nm)
         if self.mineral is not None:
-            return mineral_medium(minerals_db.mineral(self.mineral), wavelengths, self.rotation)
+            return mineral_medium(minerals_db.mineral(self.mineral), wavelengths, self.rotation, self.concentrations)
         assert self.indices is not None
         coefficients = self._coefficients()
         return _inline(
@@ -310,7 +300,8 @@ def joint_medium(descriptions: Sequence[MediumDescription], wavelength_nm: Array
         raise ValueError("a joint medium takes one description per wavelength, all of one family")
     (family,) = families
     if family.mineral is not None:
-        unturned = mineral_medium(minerals_db.mineral(family.mineral), wavelengths)
+        given = dict(family.concentrations)
+        unturned = mineral_medium(minerals_db.mineral(family.mineral), wavelengths, concentrations=given)
         return _turned(unturned, _stack([d.rotation or _IDENTITY for d in descriptions]))
     coefficients = None
     if family.absorbing:
@@ -379,18 +370,3 @@ def _wavelengths(value: ArrayLike) -> Real:
 def _refuse_beside_mineral(value: object, info: ValidationInfo) -> None:
     if value is not None and info.data.get("mineral") is not None:
         raise wrong(f"does not go with a mineral: {info.data['mineral']!r} has its own")
-
-
-def _matrix(rows: Sequence[Sequence[float]]) -> Matrix:
-    a, b, c = ((row[0], row[1], row[2]) for row in rows)
-    return a, b, c
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _right_handed(frame: Matrix) -> bool:
-    a, b, c = frame
-    cross = (b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0])
-    return _dot(a, cross) > 0

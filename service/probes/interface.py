@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
-from crystal_core.materials.description import UNIT_TOLERANCE, MediumDescription, Vector, wrong
+from crystal_core.materials.description import MediumDescription
+from crystal_core.materials.written_frames import UNIT_TOLERANCE, Vector, wrong
 from service.probes.probe import Probe
 from service.probes.scattering import scatter_requests
 

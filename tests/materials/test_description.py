@@ -16,6 +16,7 @@ from crystal_core.materials import medium
 from crystal_core.materials.description import MediumDescription, joint_medium
 from crystal_core.optics import Medium
 from crystal_core.optics.indicatrix import dissipation, permittivity
+from tests.materials.entries import monoclinic
 
 Real = NDArray[np.float64]
 
@@ -223,3 +224,19 @@ def test_the_kind_decides_not_the_values() -> None:
     assert described(indices=[1.5]).is_isotropic
     assert not described(indices=[1.5, 1.5, 1.5], axes=AXES).is_isotropic
     assert described(mineral="fluorite").is_isotropic
+
+
+def test_concentrations_of_a_minerals_chromophores(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(minerals_db, "minerals", lambda: {"made-up": monoclinic()})
+    monkeypatch.setattr(minerals_db, "mineral", lambda _: monoclinic())
+    plain, strong = described(mineral="made-up"), described(mineral="made-up", concentrations={"iron": 8.0})
+    assert plain.family != strong.family
+    for one, gamma in ((plain, 3.3), (strong, 12.3)):
+        for found in (one.medium(LINES[:2]), joint_medium([one, one], LINES[:2])):
+            assert found.absorption_per_mm is not None
+            np.testing.assert_allclose(found.absorption_per_mm[2], gamma)
+    for wrong, said in (({"copper": 1.0}, "made-up has the chromophores iron, not copper"), ({"iron": -1.0}, "equal")):
+        with pytest.raises(ValidationError, match=said):
+            described(mineral="made-up", concentrations=wrong)
+    with pytest.raises(ValidationError, match="those of a mineral"):
+        described(indices=[1.5], concentrations={"iron": 1.0})
