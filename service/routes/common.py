@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import Depends, Request, Response
@@ -9,7 +10,7 @@ from fastapi import Depends, Request, Response
 from service.problems import MEDIA_TYPE
 from service.workshop import Workshop
 
-__all__ = ["IMMUTABLE", "TheWorkshop", "is_known", "problem_answers", "unchanged"]
+__all__ = ["IMMUTABLE", "TheWorkshop", "is_known", "preferred_type", "problem_answers", "unchanged"]
 
 IMMUTABLE = "public, max-age=31536000, immutable"
 """``Cache-Control`` of what never changes under its address."""
@@ -33,6 +34,32 @@ def is_known(request: Request, etag: str) -> bool:
 def unchanged(etag: str, cache_control: str) -> Response:
     """Return the answer to a caller who has the content already."""
     return Response(status_code=304, headers={"ETag": etag, "Cache-Control": cache_control})
+
+
+def preferred_type(request: Request, offered: Sequence[str]) -> str:
+    """Return the media type that the caller likes best (``Accept``, RFC 9110 12.5.1), of equals the first.
+
+    Parameters
+    ----------
+    request : Request
+        The request; one that accepts none of them is answered with the first, as the RFC allows.
+    offered : sequence of str
+        Media types there are, without parameters.
+    """
+    wanted: dict[str, float] = {}
+    for part in request.headers.get("accept", "*/*").lower().split(","):
+        kind, *parameters = (piece.strip() for piece in part.split(";"))
+        quality = next((text[2:] for text in parameters if text.startswith("q=")), "1")
+        try:
+            wanted[kind] = float(quality)
+        except ValueError:
+            wanted[kind] = 0.0
+
+    def liking(kind: str) -> float:
+        ranges = (kind, f"{kind.partition('/')[0]}/*", "*/*")
+        return next((wanted[name] for name in ranges if name in wanted), 0.0)
+
+    return max(offered, key=liking)
 
 
 def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
