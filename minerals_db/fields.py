@@ -60,7 +60,7 @@ recalled
 class Entry(BaseModel):
     """A record of the mineral data: frozen, no unknown fields."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True, defer_build=True)
 
 
 class Known(Entry):

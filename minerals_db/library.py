@@ -7,7 +7,6 @@ their YAML. The cache is bound to the bytes of the data and of this package; wha
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import os
 import tempfile
 from collections.abc import Mapping
@@ -16,12 +15,11 @@ from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import RootModel, ValidationError
 
+from minerals_db.data_files import digest_of, read_files
 from minerals_db.errors import DataFault, MineralDataError
 from minerals_db.schema import Mineral
-from minerals_db.store import read_minerals
-from minerals_db.yaml_files import read_files
 
 __all__ = ["OWN_FOLDER_VARIABLE", "all_minerals", "builtin_minerals", "data_digest", "own_folder", "own_minerals"]
 
@@ -29,7 +27,9 @@ OWN_FOLDER_VARIABLE = "ISOGYRE_MINERALS_DIR"
 """Environment variable that names the folder of the user's own minerals. The environment, because every process of a
 render, wherever it was started, has to see the same minerals."""
 
-_CACHED: TypeAdapter[dict[str, Mineral]] = TypeAdapter(dict[str, Mineral])
+
+class _Minerals(RootModel[dict[str, Mineral]]):
+    """What the cache holds."""
 
 
 @cache
@@ -41,12 +41,14 @@ def builtin_minerals() -> Mapping[str, Mineral]:
     MineralDataError
         Where a data file is faulty.
     """
-    key = f"{_digest_of(_builtin_files())} {_digest_of(_code())}\n".encode()
+    key = f"{digest_of(_builtin_files())} {digest_of(_code())}\n".encode()
     file = _cache_file()
     found = _cached(file, key)
     if found is None:
+        from minerals_db.store import read_minerals  # with its YAML: only for those who need it
+
         found = read_minerals(_builtin_files(), {})
-        _keep(file, key + _CACHED.dump_json(dict(found), exclude_unset=True))
+        _keep(file, key + _Minerals(dict(found)).model_dump_json(exclude_unset=True).encode())
     return found
 
 
@@ -62,6 +64,8 @@ def own_minerals() -> Mapping[str, Mineral]:
     folder = own_folder()
     if folder is None:
         return MappingProxyType({})
+    from minerals_db.store import read_minerals
+
     try:
         found = read_minerals(_own_files(), builtin_minerals())
     except MineralDataError as error:
@@ -95,7 +99,7 @@ def data_digest() -> str:
         Where the user's folder cannot be read.
     """
     own = {f"own/{name}": data for name, data in _own_files().items()}
-    return _digest_of({**_builtin_files(), **own})
+    return digest_of({**_builtin_files(), **own})
 
 
 def own_folder() -> Path | None:
@@ -127,14 +131,6 @@ def _code() -> Mapping[str, bytes]:
     return {file.name: file.read_bytes() for file in package.iterdir() if file.name.endswith(".py")}
 
 
-def _digest_of(files: Mapping[str, bytes]) -> str:
-    digest = hashlib.sha256()
-    for name, data in sorted(files.items()):
-        digest.update(f"{name}\0{len(data)}\0".encode())
-        digest.update(data)
-    return digest.hexdigest()
-
-
 def _cache_file() -> Path:
     """Return the file of the cache, after the XDG base directory specification."""
     base = os.environ.get("XDG_CACHE_HOME", "")
@@ -152,7 +148,7 @@ def _cached(file: Path, key: bytes) -> Mapping[str, Mineral] | None:
     if not content.startswith(key):
         return None
     try:
-        return MappingProxyType(_CACHED.validate_json(content[len(key) :]))
+        return MappingProxyType(_Minerals.model_validate_json(content[len(key) :]).root)
     except ValidationError:
         return None  # damaged on the disk: the YAML is what counts
 

@@ -12,7 +12,7 @@ __all__ = ["ColourQuality", "DispersionQuality", "colour_quality", "dispersion_q
 DispersionQuality = Literal["published", "fallback"]
 ColourQuality = Literal["measured", "estimated", "none"]
 
-_TRUSTED = ("published", "measured", "fitted")
+_TRUSTED = ("published", "measured", "fitted", "derived")
 
 
 def dispersion_quality(mineral: Mineral) -> DispersionQuality:

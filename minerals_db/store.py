@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from minerals_db.data_files import read_files
 from minerals_db.errors import DataFault, MineralDataError
 from minerals_db.schema import VARIETY_OWN, Mineral, Source
-from minerals_db.yaml_files import faults_of, parse, read_files
+from minerals_db.yaml_files import faults_of, parse
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import yaml
 from pydantic import ValidationError
 
 from minerals_db.errors import DataFault
 
-if TYPE_CHECKING:
-    from importlib.resources.abc import Traversable
-
-__all__ = ["faults_of", "parse", "read_files"]
+__all__ = ["faults_of", "parse"]
 
 # libyaml is about eight times as fast; PyYAML without it reads the same.
 _BASE: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -33,18 +30,6 @@ class _Loader(_BASE):  # type: ignore[misc]  # the base is chosen at run time
             seen.add(key)
         mapping: dict[Hashable, Any] = super().construct_mapping(node, deep)
         return mapping
-
-
-def read_files(folder: Traversable) -> dict[str, bytes]:
-    """Return the bytes of every YAML file of a folder, by name, sorted.
-
-    Raises
-    ------
-    OSError
-        Where the folder or a file cannot be read.
-    """
-    files = {file.name: file for file in folder.iterdir() if file.name.endswith((".yaml", ".yml"))}
-    return {name: files[name].read_bytes() for name in sorted(files)}
 
 
 def parse(name: str, data: bytes, faults: list[DataFault]) -> dict[Hashable, Any] | None:

@@ -169,7 +169,8 @@ def test_faults_of_a_file_are_named_by_its_fields(tmp_path: Path) -> None:
         assert old in text
         text = text.replace(old, new)
     (tmp_path / "quartz.yaml").write_text(text, encoding="utf-8")
-    (tmp_path / "sources.yaml").write_text((data / "sources.yaml").read_text(encoding="utf-8"), encoding="utf-8")
+    for sources in data.glob("sources*.yaml"):
+        (tmp_path / sources.name).write_bytes(sources.read_bytes())
     with pytest.raises(MineralDataError) as caught:
         load_minerals(tmp_path)
     assert [fault.field for fault in caught.value.faults] == [
