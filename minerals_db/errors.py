@@ -34,8 +34,11 @@ class DataFault:
         return ": ".join(part for part in (self.file, self.field, self.reason) if part)
 
 
-class MineralDataError(ValueError):
+class MineralDataError(Exception):
     """Mineral data that cannot be trusted; every fault found is named, one a line.
+
+    It is no ``ValueError``: the question during which the data are read first is not what is wrong, and a validator of
+    pydantic, which may be who reads them, must not take it for that.
 
     Parameters
     ----------

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Annotated, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
 
 from minerals_db.chemistry import ELEMENTS, elements_of, plain_formula
 from minerals_db.facts import Facts, facts
@@ -48,17 +49,22 @@ def _lower_parts(value: object) -> object:
     return tuple(map(_lower, parts)) if isinstance(parts, tuple) else value
 
 
+def _refusal(reason: str) -> PydanticCustomError:
+    """Return the error of a value, in words that need no preface."""
+    return PydanticCustomError("description", "{reason}", {"reason": reason})
+
+
 def _symbol(text: str) -> str:
     symbol = text.capitalize() if text.islower() else text
     if symbol not in ELEMENTS:
-        raise ValueError(f"{text!r} is no element; give symbols such as Ca, C")
+        raise _refusal(f"{text!r} is no element; give symbols such as Ca, C")
     return symbol
 
 
 def _sort_key(text: str) -> str:
     if text.removeprefix("-") not in SORT_KEYS:
-        raise ValueError(
-            f"{text!r} is no order; those are {', '.join(SORT_KEYS)}, the other way round with a '-' before"
+        raise _refusal(
+            f"{text!r} is no order; those are {', '.join(SORT_KEYS)}, backwards with a '-' before it"
         )
     return text
 
@@ -122,7 +128,7 @@ class Query(BaseModel):
     @classmethod
     def _says_something(cls, text: str | None) -> str | None:
         if text is not None and not text.strip():
-            raise ValueError("must not be blank")
+            raise _refusal("must not be blank")
         return text
 
     @field_validator("n_max", "birefringence_max")
@@ -130,7 +136,7 @@ class Query(BaseModel):
     def _is_a_range(cls, most: float | None, info: ValidationInfo) -> float | None:
         least = info.data.get(str(info.field_name).replace("_max", "_min"))
         if most is not None and least is not None and most < least:
-            raise ValueError(f"must not be less than {str(info.field_name).replace('_max', '_min')}, {least:g}")
+            raise _refusal(f"must not be less than {str(info.field_name).replace('_max', '_min')}, {least:g}")
         return most
 
     @field_validator("quality")
@@ -138,7 +144,7 @@ class Query(BaseModel):
     def _one_of_each(cls, quality: tuple[Quality, ...]) -> tuple[Quality, ...]:
         for kind in (DispersionQuality, ColourQuality):
             if len(set(quality) & set(get_args(kind))) > 1:
-                raise ValueError(f"only one of {', '.join(get_args(kind))} can be true of a mineral")
+                raise _refusal(f"only one of {', '.join(get_args(kind))} can be true of a mineral")
         return quality
 
 

@@ -11,8 +11,10 @@ import typer
 
 from crystal_core import __version__
 from crystal_core.errors import InputError, IsogyreError, NotSupportedError
+from minerals_db.errors import MineralDataError
 from service.commands.complaint import complain, input_complaints
 from service.commands.interface import interface
+from service.commands.minerals import minerals
 from service.commands.plate import plate
 from service.commands.render import render
 from service.commands.serve import serve
@@ -32,6 +34,7 @@ app.command()(render)
 app.command()(interface)
 app.command()(plate)
 app.command("wave-surface")(wave_surface)
+app.add_typer(minerals, name="minerals")
 app.command()(serve)
 
 
@@ -77,6 +80,10 @@ def run(arguments: Sequence[str]) -> int:
     except InputError as error:
         for line in input_complaints(error):
             complain(line)
+        return BAD_INPUT
+    except MineralDataError as error:  # of the user's own folder, as a rule; of a development of the built-in ones
+        for fault in error.faults:
+            complain(str(fault))
         return BAD_INPUT
     except NotSupportedError as error:
         complain(str(error))

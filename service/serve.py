@@ -14,6 +14,7 @@ from types import FrameType
 
 import uvicorn
 
+import minerals_db
 from crystal_core.errors import InputError
 from service.app import create_app
 from service.events import Bell
@@ -71,10 +72,13 @@ def run(host: str, port: int, settings: Settings) -> None:
     ------
     InputError
         The settings, the data directory or the address cannot be used.
+    MineralDataError
+        The mineral data are faulty, the user's own as a rule.
     SystemExit
         Code 1 if the port is taken, 130 after Ctrl-C.
     """
     set_up_logging(settings)
+    minerals_db.minerals()  # what is wrong with them is said now, not to everybody who asks for one
     with _sigterm_ends():
         _run(host, port, settings)
 

@@ -10,6 +10,7 @@ from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from crystal_core.errors import Fault, InputError
+from minerals_db.library import OWN_FOLDER_VARIABLE, own_folder
 
 __all__ = ["Settings", "load_settings"]
 
@@ -42,6 +43,11 @@ class Settings(BaseSettings):
         default=5, description="How far workers stand behind the service when processors are scarce"
     )
     max_body_bytes: Annotated[int, Field(ge=1024)] = Field(default=1_048_576, description="Largest request body")
+    minerals_dir: Path | None = Field(
+        default=None,
+        description="Folder of the user's own minerals. The environment alone decides: every process of a render reads "
+        "it there; it is checked with the settings",
+    )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         default="info", description="Least level that is logged"
     )
@@ -54,6 +60,16 @@ class Settings(BaseSettings):
     def _absolute(cls, path: Path) -> Path:
         # Worker processes and later working directories must mean the same folder.
         return path.expanduser().absolute()
+
+    @field_validator("minerals_dir", mode="before")
+    @classmethod
+    def _is_the_environments_folder(cls, value: object) -> Path | None:
+        folder = own_folder()  # what minerals_db reads, whatever it makes of the value
+        if value not in (None, "", os.environ.get(OWN_FOLDER_VARIABLE), folder):
+            raise ValueError(f"is set by the environment variable {OWN_FOLDER_VARIABLE} alone")
+        if folder is not None and not folder.is_dir():
+            raise ValueError(f"{folder} is not a folder" if folder.exists() else f"there is no folder {folder}")
+        return folder
 
 
 def load_settings() -> Settings:
@@ -72,6 +88,9 @@ def load_settings() -> Settings:
         return Settings()
     except ValidationError as error:
         raise InputError(
-            Fault(f"{_PREFIX}{'_'.join(str(part) for part in fault['loc']).upper()}", fault["msg"])
+            Fault(
+                f"{_PREFIX}{'_'.join(str(part) for part in fault['loc']).upper()}",
+                fault["msg"].removeprefix("Value error, "),
+            )
             for fault in error.errors()
         ) from None

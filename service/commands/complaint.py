@@ -6,13 +6,17 @@ import sys
 
 from crystal_core.errors import InputError
 
-__all__ = ["complain", "input_complaints"]
+__all__ = ["complain", "input_complaints", "one_line"]
 
 
 def complain(text: str) -> None:
     """Write one line to stderr, whatever control characters the text holds."""
-    line = "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
-    print(f"isogyre: {line}", file=sys.stderr)
+    print(f"isogyre: {one_line(text)}", file=sys.stderr)
+
+
+def one_line(text: str) -> str:
+    """Return a text with its control characters spelt out, so that it stays one line and does nothing to a terminal."""
+    return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
 
 
 def input_complaints(error: InputError) -> list[str]:
