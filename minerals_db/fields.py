@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-__all__ = ["Entry", "Interval", "Key", "Known", "Number", "Positive", "Status", "Text"]
+__all__ = ["AngleInterval", "Entry", "Interval", "Key", "Known", "Number", "Positive", "Status", "Text"]
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A finite number. Strict: "1.5" in quotes and `yes` are not numbers."""
@@ -32,6 +32,14 @@ Interval = Annotated[
     AfterValidator(_rising),
 ]
 """A published range [lowest, highest]; one number stands for itself."""
+
+_Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0, le=180.0)]
+AngleInterval = Annotated[
+    tuple[_Degrees, _Degrees],
+    BeforeValidator(_pair, json_schema_input_type=_Degrees | tuple[_Degrees, _Degrees]),
+    AfterValidator(_rising),
+]
+"""A published range of an angle, degrees, 0 to 180; one number stands for itself."""
 
 Text = Annotated[str, Field(strict=True, min_length=1, max_length=2000)]
 """Some text."""

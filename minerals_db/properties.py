@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from minerals_db.fields import Interval, Known, Positive, Text
+from minerals_db.fields import AngleInterval, Interval, Known, Positive, Text
 
 __all__ = [
     "Appearance",
@@ -58,7 +58,7 @@ class Luminescence(Known):
 class AxialAngle(Known):
     """A measured angle between the optic axes."""
 
-    two_v_deg: Annotated[Interval, Field(description="2V, degrees; about the bisectrix named, so up to 180")]
+    two_v_deg: AngleInterval = Field(description="2V, degrees; about the bisectrix named, so up to 180")
     bisectrix: Literal["alpha", "gamma"] = Field(description="Which of X and Z lies in the angle: 2V_α or 2V_γ")
     wavelength_nm: Positive | None = Field(None, description="Vacuum wavelength, nm; None where the source is silent")
     disagreement: Text | None = Field(
