@@ -166,7 +166,9 @@ def _flow(fields: Mapping[str, Any]) -> str:
 def _curve(recipe: Mapping[str, Any], part: Mapping[str, Any], axis: str, matched: Match) -> list[str]:
     """Return the lines of one curve."""
     bands, edges = [], []
-    for name in part["axes"][axis]:
+    names = part["axes"][axis]
+    # A band that no colour asks for is left out, unless nothing at all absorbs.
+    for name in [name for name in names if matched.peaks[part["name"], axis, name] > 0.0] or names[:1]:
         term = {key: value for key, value in recipe["terms"][name].items() if key != "assignment"}
         peak = matched.peaks[part["name"], axis, name]
         assignment = recipe["terms"][name].get("assignment")
