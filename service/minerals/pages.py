@@ -73,16 +73,20 @@ def digest_of(value: object) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
-@cache
 def answer_version() -> str:
     """Return a short digest of the data and of the code that answers with them: what answers depend on besides."""
-    digest = hashlib.sha256(minerals_db.data_digest().encode())
+    return digest_of([minerals_db.data_digest(), _code_digest()])
+
+
+@cache
+def _code_digest() -> str:
+    digest = hashlib.sha256()
     for package in (minerals_db, service):
         root = Path(str(package.__file__)).parent
         for path in sorted(root.rglob("*.py")):
             digest.update(f"{package.__name__}/{path.relative_to(root).as_posix()}\0".encode())
             digest.update(hashlib.sha256(path.read_bytes()).digest())
-    return digest.hexdigest()[:32]
+    return digest.hexdigest()
 
 
 def _write(place: tuple[str, str, str]) -> str:

@@ -1,55 +1,13 @@
-"""Minerals, demonstrations, the API's description, the page."""
+"""Demonstrations, the API's description, the page."""
 
 from __future__ import annotations
 
 import pytest
 from fastapi.testclient import TestClient
 
-import minerals_db
 from crystal_core.errors import InputError
 from service import app as app_module
 from service.app import page_folder
-
-
-def test_minerals_are_listed_with_what_a_choice_needs(client: TestClient) -> None:
-    minerals = client.get("/v1/minerals").json()["minerals"]
-    assert [mineral["id"] for mineral in minerals] == list(minerals_db.minerals())
-    calcite = next(mineral for mineral in minerals if mineral["id"] == "calcite")
-    assert set(calcite["names"]) == {"en", "ru"}
-    assert (calcite["system"], calcite["optical_class"], calcite["optic_sign"]) == ("trigonal", "uniaxial", "negative")
-    assert calcite["formula"]
-    assert calcite["point_group"]
-    assert client.get(calcite["links"]["self"]).json()["id"] == "calcite"
-
-
-def test_a_mineral_comes_whole_with_sources_and_indices(client: TestClient) -> None:
-    calcite = client.get("/v1/minerals/calcite").json()
-    assert set(calcite["dispersion"]) == {"o", "e"}
-    assert calcite["dispersion"]["o"]["source"] in calcite["sources"]
-    assert calcite["indices"]["wavelength_nm"] == 589.3
-    # Every handbook: 1.658 and 1.486 at the D line.
-    assert calcite["indices"]["o"] == pytest.approx(1.658, abs=5e-4)
-    assert calcite["indices"]["e"] == pytest.approx(1.486, abs=5e-4)
-
-
-def test_a_biaxial_mineral_is_told_by_its_axes(client: TestClient) -> None:
-    topaz = client.get("/v1/minerals/topaz").json()
-    assert (topaz["optical_class"], topaz["optic_sign"]) == ("biaxial", "positive")
-    assert {axis: topaz["indices"][axis] for axis in "abc"} == {"a": 1.61161, "b": 1.61375, "c": 1.62109}
-    assert topaz["orientation"]["gamma"] == "c"
-    assert topaz["orientation"]["source"] in topaz["sources"]
-
-
-def test_an_active_mineral_tells_its_rotation(client: TestClient) -> None:
-    rotation = client.get("/v1/minerals/quartz").json()["optical_rotation"]
-    assert rotation["hand"]["sense"] == "right"
-    assert client.get("/v1/minerals/calcite").json()["optical_rotation"] is None
-
-
-def test_mineral_data_are_validated_by_their_digest(client: TestClient) -> None:
-    etag = client.get("/v1/minerals").headers["etag"]
-    assert minerals_db.data_digest() in etag
-    assert client.get("/v1/minerals", headers={"If-None-Match": etag}).status_code == 304
 
 
 def test_demonstrations_come_with_the_schema_of_their_parameters(client: TestClient) -> None:
@@ -65,6 +23,7 @@ def test_openapi_describes_the_interface(client: TestClient) -> None:
     assert set(document["paths"]) == {
         "/v1/minerals",
         "/v1/minerals/{mineral_id}",
+        "/v1/minerals/{mineral_id}/optics",
         "/v1/demonstrations",
         "/v1/renders",
         "/v1/renders/{render_id}",

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import pytest
+from playwright.sync_api import Route
 
 from tests.web.visitor import Visitor
 
@@ -107,3 +109,18 @@ def test_schema_becomes_fields(module: Any) -> None:
 def test_formula_has_its_subscripts(module: Any) -> None:
     found = module("elements/facts", "a.map(m.formulaText)", ["CaCO3", "Ca5(PO4)3F", "CaSO4·2H2O", "C"])
     assert found == ["CaCO₃", "Ca₅(PO₄)₃F", "CaSO₄·2H₂O", "C"]
+
+
+def test_the_list_of_minerals_is_followed_from_page_to_page(visitor: Visitor, module: Any) -> None:
+    whole = "(await (await fetch('/v1/minerals?limit=500')).json()).minerals.map((mineral) => mineral.id)"
+    known = module("client", whole)
+    asked: list[str] = []
+
+    def shorten(route: Route) -> None:
+        asked.append(route.request.url)
+        route.continue_(url=re.sub(r"\blimit=\d+", "limit=7", route.request.url))
+
+    visitor.page.route("**/v1/minerals?*", shorten)
+    found = module("client", "(await new m.Client(a).minerals()).map((mineral) => mineral.id)", visitor.address)
+    assert found == known
+    assert len(asked) == math.ceil(len(found) / 7) > 1

@@ -29,8 +29,15 @@ export class Client {
     return (await this.#ask("v1/demonstrations")).demonstrations;
   }
 
+  /** Every mineral there is, shortly: the list comes in pages. */
   async minerals() {
-    return (await this.#ask("v1/minerals")).minerals;
+    const found = [];
+    for (let path = "v1/minerals?limit=500"; path; ) {
+      const { minerals, links } = await this.#ask(path);
+      found.push(...minerals);
+      path = links.next;
+    }
+    return found;
   }
 
   /** A mineral's whole entry: its numbers with their sources, its indices at the D line. */
