@@ -142,6 +142,12 @@ HUES = [
     ("iolite", "b", 4.0, 270.0, 310.0),
     ("andalusite", "c", 3.0, 25.0, 60.0),
     ("andalusite", "b", 3.0, 95.0, 125.0),
+    ("kyanite", "gamma", 2.0, 250.0, 290.0),
+    ("epidote", "gamma", 0.5, 105.0, 135.0),
+    ("biotite", "gamma", 0.03, 20.0, 60.0),
+    ("hornblende", "gamma", 0.03, 120.0, 160.0),
+    ("kunzite", "alpha", 5.0, 315.0, 350.0),
+    ("hiddenite", "alpha", 5.0, 130.0, 165.0),
 ]
 
 
@@ -149,6 +155,27 @@ HUES = [
 def test_colours_are_those_of_the_gem_books(mineral: str, axis: str, mm: float, least: float, largest: float) -> None:
     hue = hue_deg(mineral, axis, mm)
     assert least <= hue <= largest or least <= hue + 360.0 <= largest
+
+
+@pytest.mark.parametrize(
+    "order",
+    [
+        "biotite: gamma = beta > alpha",  # Y = Z >> X, Masaryk University
+        "hornblende: gamma > beta > alpha",  # Gribble and Hall 1985
+        "kyanite: gamma > beta > alpha",  # Gribble and Hall 1985
+        "titanite: gamma > beta > alpha",  # MinTS
+        "staurolite: gamma > beta > alpha",  # MinTS
+        "kunzite: alpha > beta > gamma",  # from the colours, Handbook of Mineralogy
+    ],
+)
+def test_the_order_of_absorption_is_the_published_one(order: str) -> None:
+    mineral, directions = order.split(": ")
+    # weighed as the eye does, near enough: the middle of the visible
+    middle = 1e7 / np.linspace(480.0, 640.0, 81)
+    words = directions.split()
+    for first, sign, second in zip(words[::2], words[1::2], words[2::2], strict=False):
+        more, less = (float(per_mm(mineral, axis, middle).mean()) for axis in (first, second))
+        assert more > 1.05 * less if sign == ">" else more == pytest.approx(less, rel=1e-12)
 
 
 def test_differences_of_hue_between_the_waves() -> None:
