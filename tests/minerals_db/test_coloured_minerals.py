@@ -98,6 +98,19 @@ def test_the_iron_rule_of_tourmaline() -> None:
     assert gain[0] > 10.0 * gain[1]
 
 
+def test_heating_tanzanite_destroys_the_band_at_455_nm() -> None:
+    # bands at 595, 528 and, before heating and along gamma alone, 455 nm (Hurlbut, Am. Mineral. 54, 702 (1969))
+    blue, red = 1e7 / 455.0, 1e7 / 595.0
+    ratio = {
+        (mineral, axis): float(per_mm(mineral, axis, blue) / per_mm(mineral, axis, red))
+        for mineral in ("tanzanite", "tanzanite-unheated")
+        for axis in "abc"
+    }
+    assert ratio["tanzanite-unheated", "a"] > 1.5
+    assert ratio["tanzanite", "a"] < 0.2
+    assert ratio["tanzanite-unheated", "c"] < ratio["tanzanite-unheated", "a"]
+
+
 def lab(mineral: Mineral, axis: str, mm: float) -> np.ndarray:
     """Return CIELAB of the colour through a thickness."""
     return np.asarray(TOOL.lab_of_xyz(linear_srgb_to_xyz(decode_srgb(swatches(mineral, mm)[axis]))))
