@@ -77,8 +77,8 @@ def run(host: str, port: int, settings: Settings) -> None:
     SystemExit
         Code 1 if the port is taken, 130 after Ctrl-C.
     """
-    set_up_logging(settings)
     minerals_db.minerals()  # what is wrong with them is said now, not to everybody who asks for one
+    set_up_logging(settings)
     with _sigterm_ends():
         _run(host, port, settings)
 

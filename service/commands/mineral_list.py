@@ -18,7 +18,8 @@ __all__ = ["print_list"]
 
 _HEADS = ("id", "name", "название", "system", "optics", "n", "δ", "2V", "dispersion", "colour")
 _SIGNS = {"positive": "+", "negative": "−"}
-_NUMBERS = ("δ", "2V")
+_SPARED = ("название", "name", "system")
+"""Columns that a narrow terminal does without, in this order: the id says nearly as much."""
 
 
 def print_list(minerals: Sequence[Mineral]) -> None:
@@ -30,13 +31,25 @@ def print_list(minerals: Sequence[Mineral]) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    console = Console(markup=False, highlight=False)
+    shown = _that_fit(rows, console.width)
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for head in _HEADS:
-        table.add_column(head, no_wrap=head == "id", justify="right" if head in _NUMBERS else "left")
+    for head in shown:
+        table.add_column(head, justify="right" if head in ("δ", "2V") else "left", overflow="fold")
     for row in rows:
-        table.add_row(*row)
-    Console(markup=False, highlight=False).print(table)
+        table.add_row(*(cell for head, cell in zip(_HEADS, row, strict=True) if head in shown))
+    console.print(table)
     print_text(f"{len(rows)} {'mineral' if len(rows) == 1 else 'minerals'}")
+
+
+def _that_fit(rows: Sequence[Sequence[str]], width: int) -> list[str]:
+    """Return the heads of the columns for which a terminal of some width has room."""
+    widths = {head: max(map(len, column)) for head, column in zip(_HEADS, zip(_HEADS, *rows, strict=True), strict=True)}
+    shown = list(_HEADS)
+    for head in _SPARED:
+        if sum(widths[kept] + 2 for kept in shown) - 2 > width:
+            shown.remove(head)
+    return shown
 
 
 def _cells(mineral: Mineral) -> tuple[str, ...]:

@@ -127,7 +127,9 @@ def _told(label: str, value: object, indent: str) -> Iterator[str]:
 
 
 def _fields(record: BaseModel) -> list[tuple[str, object]]:
-    return [(name, value) for name in type(record).model_fields if (value := getattr(record, name)) is not None]
+    """Return what the file says of a record, the kind of a curve first; no defaults."""
+    names = sorted(filter(record.model_fields_set.__contains__, type(record).model_fields), key="model".__ne__)
+    return [(name, value) for name in names if (value := getattr(record, name)) is not None]
 
 
 def _holds_records(value: object) -> bool:
