@@ -22,7 +22,7 @@ def block(size_mm: tuple[float, float, float]) -> ConvexPolyhedron:
 def rhombohedron(
     pole_angle_deg: float, spacing_mm: tuple[float, float, float], axis_azimuth_deg: float
 ) -> tuple[ConvexPolyhedron, Real]:
-    """Return a rhombohedron that lies on one of its faces, centred on the origin, and its threefold axis.
+    """Return a rhombohedron that lies on one of its faces, centred on the origin, and how its crystal is turned.
 
     Parameters
     ----------
@@ -37,8 +37,8 @@ def rhombohedron(
     -------
     body : ConvexPolyhedron
         Two of its faces are z = ± spacing[2]/2.
-    axis : Real
-        Unit vector of c with c_z > 0, shape (3,).
+    rotation : Real
+        R of v_world = R v_crystal, shape (3, 3), with the threefold axis c along the crystal's z, c_z > 0.
     """
     pole = np.deg2rad(pole_angle_deg)
     turns = np.deg2rad((120.0, 240.0, 0.0))
@@ -52,7 +52,7 @@ def rhombohedron(
     upper[2] = (0.0, 0.0, 1.0)
     half = 0.5 * np.asarray(spacing_mm, np.float64)
     body = ConvexPolyhedron.from_half_spaces(np.concatenate((upper, -upper)), np.concatenate((half, half)))
-    return body, turn @ np.array((0.0, 0.0, 1.0))
+    return body, turn
 
 
 def rotation_about_z(angle_deg: float) -> Real:

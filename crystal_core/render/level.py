@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from crystal_core.optics import Coherency, transverse_frame
 from crystal_core.optics.arrays import columns, dot
+from crystal_core.render.anisotropic_events import AnisotropicEvents
 from crystal_core.render.illumination import Illumination
 from crystal_core.render.isotropic_events import IsotropicEvents
 from crystal_core.render.rays import BATCH
 from crystal_core.render.sampling import passes
 from crystal_core.render.surroundings import Surroundings
 from crystal_core.render.tracer import Arrivals, Events, Roulette, Stopwatch, Tracer
-from crystal_core.render.uniaxial_events import UniaxialEvents
 from crystal_core.scene import StagedScene, StagedSpecimen
 
 __all__ = ["Level", "Seen"]
@@ -180,4 +180,4 @@ def _importance(scene: StagedScene, direction: Real) -> Coherency:
 
 def _events(specimen: StagedSpecimen, wavelength_nm: Real) -> Events:
     medium = specimen.medium(wavelength_nm)
-    return IsotropicEvents(specimen, medium) if medium.is_isotropic else UniaxialEvents(specimen, medium)
+    return IsotropicEvents(specimen, medium) if medium.is_isotropic else AnisotropicEvents(specimen, medium)

@@ -13,14 +13,13 @@ from crystal_core.errors import InputError
 from crystal_core.geometry import ConvexPolyhedron, FaceFinder, block, face_finder, rhombohedron
 from crystal_core.geometry.cuts import rotation_about_z
 from crystal_core.geometry.lattice import direct_basis, face_normal
-from crystal_core.materials import absorption_coefficients, principal_indices
+from crystal_core.materials import medium, principal_indices
 from crystal_core.optics import Medium
 from crystal_core.scene.description import Camera, Page, Scene, Shape
 from crystal_core.scene.printed_page import printed_digits
 from crystal_core.scene.texture import MAX_PIXELS, Texture, decode_texture, read_asset
 
 __all__ = [
-    "RENDERED_CLASSES",
     "StagedCamera",
     "StagedPage",
     "StagedScene",
@@ -30,9 +29,6 @@ __all__ = [
 ]
 
 Real = NDArray[np.float64]
-
-RENDERED_CLASSES = ("isotropic", "uniaxial")
-"""The optical classes of the crystals that can be rendered yet."""
 
 TEXELS_PER_MARK = 8.0
 """Texels across a mark at least: its covered rim then keeps its centre to a hundredth of a texel."""
@@ -50,27 +46,27 @@ class StagedSpecimen:
         In the world, mm.
     finder : FaceFinder
         First face on a ray from outside.
-    axis : Real
-        Optic axis, shape (3,).
+    rotation : Real
+        R of v_world = R v_crystal, shape (3, 3).
     """
 
     mineral: minerals_db.Mineral
     body: ConvexPolyhedron
     finder: FaceFinder
-    axis: Real
+    rotation: Real
+
+    @property
+    def axis(self) -> Real:
+        """The direction of c*, the optic axis of a uniaxial crystal, shape (3,)."""
+        return self.rotation[:, 2]
 
     def indices(self, wavelength_nm: ArrayLike) -> tuple[Real, ...]:
-        """Return the principal indices at the wavelengths: (n,) or (n_o, n_e)."""
+        """Return the principal indices at the wavelengths: in the order of `materials.principal_indices`."""
         return principal_indices(self.mineral, wavelength_nm)
 
     def medium(self, wavelength_nm: ArrayLike) -> Medium:
         """Return the crystal's medium at the wavelengths, absorption included; optical activity is left out."""
-        absorbed = absorption_coefficients(self.mineral, wavelength_nm)
-        indices = self.indices(wavelength_nm)
-        if len(indices) == 1:
-            return Medium.isotropic(indices[0], None if absorbed is None else absorbed[0])
-        pair = None if absorbed is None else (absorbed[0], absorbed[1])
-        return Medium.uniaxial(indices[0], indices[1], self.axis, pair)
+        return medium(self.mineral, wavelength_nm, self.rotation).inactive()
 
 
 @dataclass(frozen=True)
@@ -108,7 +104,9 @@ class StagedScene:
         """Return the scene with the specimen (body, lattice and indicatrix) turned counter-clockwise about +z."""
         rotation = rotation_about_z(angle_deg)
         body = self.specimen.body.transformed(rotation, np.zeros(3))
-        specimen = replace(self.specimen, body=body, finder=face_finder(body), axis=rotation @ self.specimen.axis)
+        specimen = replace(
+            self.specimen, body=body, finder=face_finder(body), rotation=rotation @ self.specimen.rotation
+        )
         return replace(self, specimen=specimen)
 
 
@@ -147,7 +145,9 @@ def cleavage_pole_deg(mineral: minerals_db.Mineral) -> float:
     InputError
         The mineral is not trigonal or has no such cleavage.
     """
-    forms = [c.hkl for c in mineral.cleavage if c.hkl[1] == 0 and c.hkl[0] != 0 and c.hkl[2] != 0]
+    # A poor cleavage gives no rhombohedron, as every hammer finds with quartz.
+    good = [c.hkl for c in mineral.cleavage if c.quality in ("perfect", "good")]
+    forms = [hkl for hkl in good if hkl[1] == 0 and hkl[0] != 0 and hkl[2] != 0]
     if mineral.system != "trigonal" or mineral.cell is None or not forms:
         raise InputError.at(
             "/specimen/shape/cut", f"{mineral.id} does not cleave into a rhombohedron; cut it as a block"
@@ -163,26 +163,20 @@ def _specimen(scene: Scene) -> StagedSpecimen:
     wanted = scene.specimen.mineral
     known = minerals_db.minerals()
     if wanted not in known:
-        rendered = (name for name, entry in known.items() if entry.optical_class in RENDERED_CLASSES)
-        raise InputError.at("/specimen/mineral", str(minerals_db.UnknownMineralError(wanted, rendered)))
+        raise InputError.at("/specimen/mineral", str(minerals_db.UnknownMineralError(wanted, known)))
     mineral = known[wanted]
-    if mineral.optical_class not in RENDERED_CLASSES:
-        raise InputError.at(
-            "/specimen/mineral",
-            f"{wanted} is {mineral.optical_class}: only {' and '.join(RENDERED_CLASSES)} crystals can be rendered yet",
-        )
-    body, axis = _body(scene.specimen.shape, mineral)
+    body, rotation = _body(scene.specimen.shape, mineral)
     lowest = float(body.vertices[:, 2].min())
     body = body.transformed(np.eye(3), np.array((0.0, 0.0, scene.specimen.gap_mm - lowest)))
-    return StagedSpecimen(mineral, body, face_finder(body), axis)
+    return StagedSpecimen(mineral, body, face_finder(body), rotation)
 
 
 def _body(shape: Shape, mineral: minerals_db.Mineral) -> tuple[ConvexPolyhedron, Real]:
     if shape.cut == "cleavage":
         return rhombohedron(cleavage_pole_deg(mineral), shape.size_mm, shape.axis_azimuth_deg)
-    tilt, azimuth = np.deg2rad((shape.axis_tilt_deg, shape.axis_azimuth_deg))
-    axis = np.array((np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)))
-    return block(shape.size_mm), axis
+    tilt = np.deg2rad(shape.axis_tilt_deg)
+    lean = np.array(((np.cos(tilt), 0.0, np.sin(tilt)), (0.0, 1.0, 0.0), (-np.sin(tilt), 0.0, np.cos(tilt))))
+    return block(shape.size_mm), rotation_about_z(shape.axis_azimuth_deg) @ lean
 
 
 def _page(page: Page, assets: Path | None) -> StagedPage:

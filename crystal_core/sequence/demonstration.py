@@ -19,7 +19,7 @@ class Parameters(BaseModel, ABC):
 
     The JSON Schema of a subclass is all that a user interface needs to build its controls: every property has a title,
     a description, a default, limits, and under ``x-label``, ``x-unit`` and ``x-group`` what people read. A property
-    with ``x-choices: minerals`` takes the id of a mineral of one of its ``x-optical-classes``.
+    with ``x-choices: minerals`` takes the id of a mineral, of one of its ``x-optical-classes`` where it has them.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

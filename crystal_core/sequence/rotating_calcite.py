@@ -11,7 +11,6 @@ from pydantic import Field
 from crystal_core.materials import SODIUM_D_NM
 from crystal_core.scene import Camera, Page, PointLight, Scene, Shape, Sky, Specimen, StagedScene
 from crystal_core.scene.description import AnalyserAngle
-from crystal_core.scene.staging import RENDERED_CLASSES
 from crystal_core.sequence.demonstration import Demonstration, Parameters
 
 __all__ = ["ROTATING_CALCITE", "RotatingCalcite"]
@@ -54,9 +53,8 @@ class RotatingCalcite(Parameters):
     mineral: Annotated[str, Field(min_length=1, max_length=64)] = Field(
         "calcite",
         title="Mineral",
-        description="Id of an isotropic or uniaxial mineral of the database.",
-        json_schema_extra=_extra("Mineral", "Минерал", SPECIMEN)
-        | {"x-choices": "minerals", "x-optical-classes": list(RENDERED_CLASSES)},
+        description="Id of a mineral of the database.",
+        json_schema_extra=_extra("Mineral", "Минерал", SPECIMEN) | {"x-choices": "minerals"},
     )
     cut: Literal["block", "cleavage"] = Field(
         "block",
@@ -74,18 +72,19 @@ class RotatingCalcite(Parameters):
         44.64,
         ge=0,
         le=180,
-        title="Tilt of the optic axis",
-        description="Angle of the optic axis from the upward normal; 44.64° is that of a calcite cleavage face. "
-        "A cleavage rhombohedron takes it from the cell.",
-        json_schema_extra=_extra("Optic axis, tilt", "Наклон оптической оси", SPECIMEN, "°"),
+        title="Tilt of the crystal's z axis",
+        description="Angle of c* (the optic axis of a uniaxial crystal) from the upward normal; 44.64° is that of a "
+        "calcite cleavage face. A cleavage rhombohedron takes it from the cell.",
+        json_schema_extra=_extra("Axis c*, tilt", "Наклон оси c*", SPECIMEN, "°"),
     )
     axis_azimuth_deg: float = Field(
         0.0,
         ge=-360,
         le=360,
-        title="Azimuth of the optic axis",
-        description="Azimuth of the optic axis at stage angle 0, counter-clockwise from x.",
-        json_schema_extra=_extra("Optic axis, azimuth", "Азимут оптической оси", SPECIMEN, "°"),
+        title="Azimuth of the crystal's z axis",
+        description="Azimuth of c* at stage angle 0, counter-clockwise from x; the axis a lies in the plane of c* and "
+        "the vertical.",
+        json_schema_extra=_extra("Axis c*, azimuth", "Азимут оси c*", SPECIMEN, "°"),
     )
     gap_mm: float = Field(
         0.02,
@@ -242,10 +241,14 @@ class RotatingCalcite(Parameters):
         }
         if self.cut == "block":
             facts["half_size_mm"] = [0.5 * self.size_mm[0], 0.5 * self.size_mm[1]]
-        if len(indices) == 2:
+        if len(indices) == 1:
+            facts["n"] = indices[0]
+        elif len(indices) == 2:
             facts |= {"optic_axis": staged.specimen.axis.tolist(), "n_o": indices[0], "n_e": indices[1]}
         else:
-            facts["n"] = indices[0]
+            axes = staged.specimen.medium(SODIUM_D_NM).axes
+            assert axes is not None  # of every biaxial medium
+            facts |= {"indices": indices, "principal_axes": axes.tolist()}
         return facts
 
 

@@ -1,6 +1,6 @@
-"""Faces of a uniaxial crystal in air: importance splits between two modes, each followed as a ray of its own.
+"""Faces of an anisotropic crystal in air: importance splits between two modes, each followed as a ray of its own.
 
-Ordinary and extraordinary rays part on their way, so beams add by intensity: their interference shows only in plates so
+The two rays part on their way, so beams add by intensity: their interference shows only in plates so
 thin that the two stay within a pixel's footprint, which this tracer does not treat as such.
 """
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crystal_core.optics import InterfaceFrame, Medium, absorption_along_ray, interface_frame
-from crystal_core.optics.arrays import columns, dot
+from crystal_core.optics.arrays import Field, columns, dot
 from crystal_core.optics.directions import waves_along
 from crystal_core.optics.eigenwaves import framed
 from crystal_core.optics.framed import FramedMedium
@@ -22,14 +22,18 @@ from crystal_core.render.rays import InsideRays
 from crystal_core.render.tracer import AIR, Arrivals, Leaving, Roulette, face_normals
 from crystal_core.scene import StagedSpecimen
 
-__all__ = ["UniaxialEvents"]
+__all__ = ["AnisotropicEvents"]
 
 Real = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 
-class UniaxialEvents:
-    """`tracer.Events` of a uniaxial specimen; mode 0 is the ordinary one, mode 1 the extraordinary.
+class AnisotropicEvents:
+    """`tracer.Events` of an anisotropic specimen.
+
+    Mode 0 is the ordinary one, mode 1 the extraordinary; of a biaxial crystal they are the slow and the fast one, but
+    where both waves of a face lie on the outer sheet (inhibited reflection) both are slow: there a ray of mode 1 comes
+    from a face as the second and may go to the next as the first of its pair.
 
     Parameters
     ----------
@@ -47,6 +51,7 @@ class UniaxialEvents:
         self._medium = medium
         self.lossless = medium.absorption_per_mm is None
         self._colours = medium.indices[0].size
+        self._is_biaxial = len(medium.indices) == 3
 
     def enter(self, arrivals: Arrivals, roulette: Roulette) -> tuple[Leaving, list[InsideRays]]:
         """Return the reflected rays and, per mode, the refracted ones."""
@@ -83,16 +88,18 @@ class UniaxialEvents:
         importance = rays.importance[0]
         if medium.absorption_per_mm is not None:
             length = distance * np.sqrt(dot(rays.ray, rays.ray))
-            field = waves_along(medium, rays.k / np.sqrt(dot(rays.k, rays.k)))[mode].e
-            importance = importance * np.exp(-length * absorption_along_ray(medium, rays.k, field))
+            importance = importance * np.exp(
+                -length * absorption_along_ray(medium, rays.k, self._field(medium, rays.k, mode))
+            )
         z = columns(self._normals, exit_face)
-        tangential = rays.k - dot(rays.k, z) * z
+        outward = dot(rays.k, z)
+        tangential = rays.k - outward * z
         frame = interface_frame(z, tangential)
         depth = rays.depth + np.int16(1)
         pieces: tuple[list[InsideRays], list[InsideRays]] = ([], [])
         out: list[Leaving] = []
         for part, face in _faces(framed(medium, frame), framed(AIR, frame)):
-            transmitted, reflected = _shares(face, mode)
+            transmitted, reflected = self._shares(face, mode, outward[part])
             weight, lane = importance[part], rays.lane[part]
             gone = np.flatnonzero(transmitted > 0.0)
             if gone.size:
@@ -102,6 +109,28 @@ class UniaxialEvents:
             shares = [weight * share for share in reflected]
             _spawn(pieces, face.frame, face.reflected, shares, columns(point, part), lane, depth[part], roulette)
         return Leaving.joined(out), [InsideRays.joined(piece) for piece in pieces]
+
+    def _field(self, medium: Medium, k: Real, mode: int) -> Field:
+        """Return the electric fields of rays of a mode, shape (3, N)."""
+        length = np.sqrt(dot(k, k))
+        pair = waves_along(medium, k / length)
+        if not self._is_biaxial:
+            return pair[mode].e
+        first = np.abs(pair[0].index - length) <= np.abs(pair[1].index - length)
+        return np.where(first, pair[0].e, pair[1].e)
+
+    def _shares(self, face: Face, mode: int, outward: Real) -> tuple[Real, tuple[Real, Real]]:
+        """Return `_shares` of rays of a mode, told from the other wave of a biaxial pair by their own k."""
+        if not self._is_biaxial:
+            return _shares(face, mode)
+        off = [np.abs(wave.q.real - outward) for wave in face.incident]
+        other = off[1 - mode] < off[mode]
+        transmitted, (first, second) = _shares(face, mode)
+        if other.any():
+            instead, (instead_first, instead_second) = _shares(face, 1 - mode)
+            transmitted = np.where(other, instead, transmitted)
+            first, second = np.where(other, instead_first, first), np.where(other, instead_second, second)
+        return transmitted, (first, second)
 
 
 def _faces(source: FramedMedium, target: FramedMedium) -> Iterator[tuple[slice | Index, Face]]:
