@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from minerals_db.curve import OutsideRangeError
-from minerals_db.indicatrix import SODIUM_D_NM, birefringence, principal_indices, two_v_deg
+from minerals_db.indicatrix import SODIUM_D_NM, angle_about_gamma_deg, principal_indices
 
 if TYPE_CHECKING:
     from minerals_db.schema import Mineral
@@ -55,11 +55,13 @@ def facts(mineral: Mineral) -> Facts:
     hardness = mineral.hardness.mohs if mineral.hardness is not None else None
     try:
         n = {axis: float(index) for axis, index in principal_indices(mineral, SODIUM_D_NM).items()}
-        delta = float(birefringence(mineral, SODIUM_D_NM))
-        two_v = float(two_v_deg(mineral, SODIUM_D_NM))
     except OutsideRangeError:
         return Facts({}, 0.0 if mineral.optical_class == "isotropic" else None, None, None, density, hardness)
     weights = {"o": 2.0}
     total = sum(weights.get(axis, 1.0) for axis in n)
     mean = sum(weights.get(axis, 1.0) * index for axis, index in n.items()) / total
-    return Facts(n, delta, mean, None if math.isnan(two_v) else two_v, density, hardness)
+    # As `indicatrix` has it, but from indices that are asked for once: a list takes the facts of all minerals.
+    rising = sorted(n.values())
+    two_v = float(angle_about_gamma_deg(rising)) if mineral.optical_class == "biaxial" else math.nan
+    acute = None if math.isnan(two_v) else min(two_v, 180.0 - two_v)
+    return Facts(n, rising[-1] - rising[0], mean, acute, density, hardness)

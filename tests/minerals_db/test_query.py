@@ -17,6 +17,7 @@ from minerals_db import Mineral
 from minerals_db.chemistry import ELEMENTS, elements_of
 from minerals_db.facts import facts
 from minerals_db.groups import GROUPS
+from minerals_db.indicatrix import SODIUM_D_NM, birefringence, two_v_deg
 from minerals_db.query import SORT_KEYS, Query, find
 
 SOURCE = {"source": "here", "status": "published"}
@@ -347,6 +348,14 @@ def test_every_formula_of_the_data_is_read() -> None:
         if mineral.kind != "glass" and not elements_of(mineral.formula)
     ]
     assert unread == []
+
+
+def test_facts_of_the_data_are_those_of_the_indicatrix() -> None:
+    for mineral in minerals_db.minerals().values():
+        told = facts(mineral)
+        assert told.birefringence == birefringence(mineral, SODIUM_D_NM)
+        assert (told.two_v_deg is None) == (mineral.optical_class != "biaxial")
+        assert math.isnan(two_v_deg(mineral, SODIUM_D_NM)) or told.two_v_deg == two_v_deg(mineral, SODIUM_D_NM)
 
 
 def test_the_data_are_found_by_what_they_are() -> None:
