@@ -1,0 +1,199 @@
+"""Shapes of bodies: habits and cleavage bodies of the lattice, cuts, meshes of one's own.
+
+Lattice shapes stand in the crystal frame, cuts and meshes in their own frame, centred on its origin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+
+from crystal_core.scene.orientation import Indices
+from crystal_core.scene.parts import Choice, FileName, Length, Location, Part, Positive
+
+__all__ = [
+    "MESH_SUFFIXES",
+    "Box",
+    "Brilliant",
+    "Cabochon",
+    "Cleavage",
+    "Form",
+    "Habit",
+    "MeshFile",
+    "Plate",
+    "Prism",
+    "Shape",
+    "Sphere",
+    "StepCut",
+    "Wedge",
+    "check_file_name",
+]
+
+MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
+
+_Pair = tuple[Length, Length]
+_Micrometres = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.1, le=1e6)]
+
+
+def check_file_name(name: str, suffixes: tuple[str, ...]) -> str | None:
+    """Return what is wrong with the name of a file, None if nothing is."""
+    if name.startswith("asset:"):
+        digest = name.removeprefix("asset:")
+        if len(digest) == 64 and set(digest) <= set("0123456789abcdef"):
+            return None
+        return "an asset is named asset: and the 64 hex digits of its sha256"
+    if not name.lower().endswith(suffixes):
+        return f"must be a file {', '.join(suffixes)}, or an asset:…"
+    if name.startswith(("/", "\\", "~")) or ":" in name or "\0" in name:
+        return "must be a path relative to the file of the scene"
+    return None
+
+
+class Form(Part):
+    """All faces that symmetry makes of one, at one distance from the centre."""
+
+    hkl: Indices
+    central_distance: Positive = 1.0
+
+
+class Habit(Choice):
+    """A grown crystal: a habit of the mineral's entry [default: its first], or forms of one's own."""
+
+    choices = ("name", "forms")
+    optional_choice = True
+
+    name: Annotated[str, Field(strict=True, min_length=1, max_length=200)] | None = None
+    forms: Annotated[tuple[Form, ...], Field(min_length=1, max_length=100)] | None = None
+    size_mm: Length = Field(default=20.0, description="Greatest distance between two corners")
+
+
+def _several(value: object) -> object:
+    return (value,) if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+class Cleavage(Part):
+    """A body between cleavage planes of the mineral."""
+
+    spacing_mm: Annotated[
+        tuple[Length, ...],
+        Field(min_length=1, max_length=12),
+        BeforeValidator(_several, json_schema_input_type=Length | tuple[Length, ...]),
+    ] = Field(default=(20.0,), description="Between the two faces of each parallel pair; one number: of all pairs")
+
+
+class Box(Part):
+    """A rectangular block."""
+
+    size_mm: tuple[Length, Length, Length] = (20.0, 20.0, 20.0)
+
+
+class Plate(Part):
+    """A plane-parallel plate, its faces horizontal: lengths in x and y in mm, thickness in µm."""
+
+    size_mm: _Pair = (20.0, 20.0)
+    thickness_um: _Micrometres
+
+
+class Wedge(Part):
+    """A wedge on a horizontal face, its thickness growing along x from the first value to the second."""
+
+    size_mm: _Pair = (30.0, 10.0)
+    thickness_um: tuple[_Micrometres, _Micrometres]
+
+    def after(self) -> Iterator[tuple[Location, str]]:
+        """Refuse a wedge that does not grow."""
+        if self.thickness_um[0] >= self.thickness_um[1]:
+            yield ("thickness_um",), "the thickness must grow: a plate has one, a wedge two rising values"
+
+
+class Prism(Part):
+    """A three-sided prism along y, its base down and its edge of refraction up."""
+
+    apex_deg: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1, le=170)] = 60.0
+    side_mm: Length = Field(default=30.0, description="Of the two faces that meet at the apex, in the cross-section")
+    length_mm: Length = 40.0
+
+
+class Sphere(Part):
+    """A sphere."""
+
+    diameter_mm: Length = 20.0
+
+
+class Cabochon(Part):
+    """A dome over a flat base, its outline an ellipse with axes x and y; the dome is up."""
+
+    size_mm: _Pair = (12.0, 10.0)
+    height_mm: Length = 5.0
+
+
+class Brilliant(Part):
+    """A round brilliant of 57 facets, its table up; single proportions replace those of the named set.
+
+    Percentages are of the diameter.
+    """
+
+    diameter_mm: Length = 6.5
+    proportions: Literal["tolkowsky", "modern"] = "tolkowsky"
+    table_percent: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=20, le=90)] | None = None
+    crown_deg: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=5, le=60)] | None = None
+    pavilion_deg: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=20, le=60)] | None = None
+    girdle_percent: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=20)] | None = None
+
+
+class StepCut(Part):
+    """A step (emerald) cut with its table up."""
+
+    size_mm: _Pair = (9.0, 7.0)
+
+
+class MeshFile(Part):
+    """A mesh of one's own: closed, oriented triangles."""
+
+    file: FileName
+    size_mm: Length | None = Field(
+        default=None, description="Greatest distance between two corners [default: the file's numbers are mm]"
+    )
+
+    def after(self) -> Iterator[tuple[Location, str]]:
+        """Refuse names that are no mesh's."""
+        reason = check_file_name(self.file, MESH_SUFFIXES)
+        if reason is not None:
+            yield ("file",), reason
+
+
+class Shape(Choice):
+    """The shape of a body, one of several."""
+
+    choices = (
+        "habit",
+        "cleavage",
+        "box",
+        "plate",
+        "wedge",
+        "prism",
+        "sphere",
+        "cabochon",
+        "brilliant",
+        "step_cut",
+        "mesh",
+    )
+
+    habit: Habit | None = None
+    cleavage: Cleavage | None = None
+    box: Box | None = None
+    plate: Plate | None = None
+    wedge: Wedge | None = None
+    prism: Prism | None = None
+    sphere: Sphere | None = None
+    cabochon: Cabochon | None = None
+    brilliant: Brilliant | None = None
+    step_cut: StepCut | None = None
+    mesh: MeshFile | None = None
+
+    @property
+    def grows(self) -> bool:
+        """Whether the lattice makes the faces: they turn with the crystal."""
+        return self.kind in {"habit", "cleavage"}
