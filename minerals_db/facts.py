@@ -25,6 +25,8 @@ class Facts:
     indices : mapping of str to float
         Principal indices at the D line (589.3 nm) by the name of their curve, in the order of the entry. Empty if a
         curve refuses the D line.
+    clamped : bool
+        Whether the D line lies outside the range of a curve, so that the index at its nearer end stands for it.
     birefringence : float or None
         Largest less smallest index at the D line; 0 of an isotropic mineral.
     mean_index : float or None
@@ -36,6 +38,7 @@ class Facts:
     """
 
     indices: Mapping[str, float]
+    clamped: bool
     birefringence: float | None
     mean_index: float | None
     two_v_deg: float | None
@@ -56,7 +59,7 @@ def facts(mineral: Mineral) -> Facts:
     try:
         n = {axis: float(index) for axis, index in principal_indices(mineral, SODIUM_D_NM).items()}
     except OutsideRangeError:
-        return Facts({}, 0.0 if mineral.optical_class == "isotropic" else None, None, None, density, hardness)
+        return Facts({}, False, 0.0 if mineral.optical_class == "isotropic" else None, None, None, density, hardness)
     weights = {"o": 2.0}
     total = sum(weights.get(axis, 1.0) for axis in n)
     mean = sum(weights.get(axis, 1.0) * index for axis, index in n.items()) / total
@@ -64,4 +67,5 @@ def facts(mineral: Mineral) -> Facts:
     rising = sorted(n.values())
     two_v = float(angle_about_gamma_deg(rising)) if mineral.optical_class == "biaxial" else math.nan
     acute = None if math.isnan(two_v) else min(two_v, 180.0 - two_v)
-    return Facts(n, rising[-1] - rising[0], mean, acute, density, hardness)
+    clamped = not all(curve.covers(SODIUM_D_NM, SODIUM_D_NM) for curve in mineral.dispersion.values())
+    return Facts(n, clamped, rising[-1] - rising[0], mean, acute, density, hardness)

@@ -63,9 +63,7 @@ def _symbol(text: str) -> str:
 
 def _sort_key(text: str) -> str:
     if text.removeprefix("-") not in SORT_KEYS:
-        raise _refusal(
-            f"{text!r} is no order; those are {', '.join(SORT_KEYS)}, backwards with a '-' before it"
-        )
+        raise _refusal(f"{text!r} is no order; those are {', '.join(SORT_KEYS)}, backwards with a '-' before it")
     return text
 
 
@@ -84,40 +82,46 @@ class Query(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     name: Word | None = Field(
-        None,
+        default=None,
         description="Part of an English or Russian name, of the id, of the group's name, or of a name of the mineral "
         "that a variety belongs to",
     )
     formula: Word | None = Field(
-        None, description="Part of the formula as it is written, such as CO3; in small letters any case will do"
+        default=None, description="Part of the formula as it is written, such as CO3; in small letters any case will do"
     )
     elements: Annotated[tuple[Annotated[str, AfterValidator(_symbol)], ...], BeforeValidator(_parts)] = Field(
-        (), max_length=20, description="Elements that the formula must hold, all of them: symbols with commas between"
+        default=(),
+        max_length=20,
+        description="Elements that the formula must hold, all of them: symbols with commas between",
     )
-    group: Word | None = Field(None, description="The family: its key or its name in English or Russian, whole")
-    system: Annotated[CrystalSystem, _Lower] | None = Field(None, description="Crystal system")
-    optical_class: Annotated[OpticalClass, _Lower] | None = Field(None, description="Shape of the indicatrix")
-    optic_sign: Annotated[Literal["positive", "negative"], _Lower] | None = Field(None, description="Optic sign")
-    n_min: Index | None = Field(None, description="At least one principal index lies from here …")
-    n_max: Index | None = Field(None, description="… to here (the same one)")
-    birefringence_min: Difference | None = Field(None, description="Least birefringence")
-    birefringence_max: Difference | None = Field(None, description="Largest birefringence")
-    colour: Annotated[Colour, _Lower] | None = Field(None, description="A colour that the mineral commonly has")
+    group: Word | None = Field(default=None, description="The family: its key or its name in English or Russian, whole")
+    system: Annotated[CrystalSystem, _Lower] | None = Field(default=None, description="Crystal system")
+    optical_class: Annotated[OpticalClass, _Lower] | None = Field(default=None, description="Shape of the indicatrix")
+    optic_sign: Annotated[Literal["positive", "negative"], _Lower] | None = Field(
+        default=None, description="Optic sign"
+    )
+    n_min: Index | None = Field(default=None, description="At least one principal index lies from here …")
+    n_max: Index | None = Field(default=None, description="… to here (the same one)")
+    birefringence_min: Difference | None = Field(default=None, description="Least birefringence")
+    birefringence_max: Difference | None = Field(default=None, description="Largest birefringence")
+    colour: Annotated[Colour, _Lower] | None = Field(default=None, description="A colour that the mineral commonly has")
     pleochroism: Annotated[PleochroismStrength, _Lower] | None = Field(
-        None, description="At least so strong; none: those known to have none, and the isotropic ones"
+        default=None, description="At least so strong; none: those known to have none, and the isotropic ones"
     )
     quality: Annotated[tuple[Quality, ...], BeforeValidator(_lower_parts)] = Field(
-        (),
+        default=(),
         max_length=2,
         description="How good the data are. Dispersion: published or fallback; colour: measured, estimated or none; "
         "one of each with a comma between",
     )
-    kind: Annotated[Kind, _Lower] | None = Field(None, description="What it is; a variety is no mineral of its own")
+    kind: Annotated[Kind, _Lower] | None = Field(
+        default=None, description="What it is; a variety is no mineral of its own"
+    )
     origin: Annotated[Literal["built-in", "own"], _Lower] | None = Field(
-        None, description="Of the package, or of the user's own folder"
+        default=None, description="Of the package, or of the user's own folder"
     )
     sort: Annotated[tuple[Annotated[str, AfterValidator(_sort_key)], ...], BeforeValidator(_lower_parts)] = Field(
-        ("id",),
+        default=("id",),
         min_length=1,
         max_length=len(SORT_KEYS),
         description=f"Order: {', '.join(SORT_KEYS)}; backwards with a '-' before it; several with commas between. "

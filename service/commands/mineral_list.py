@@ -61,7 +61,9 @@ def _cells(mineral: Mineral) -> tuple[str, ...]:
         mineral.names.ru,
         mineral.system,
         f"{mineral.optical_class} {_SIGNS.get(mineral.optic_sign or '', '')}".rstrip(),
-        "" if not n else f"{n[0]:.4f}" if len(n) == 1 else f"{n[0]:.4f}–{n[-1]:.4f}",
+        ""
+        if not n
+        else "–".join(f"{end:.4f}" for end in dict.fromkeys((n[0], n[-1]))) + ("*" if numbers.clamped else ""),
         "" if numbers.birefringence is None else f"{numbers.birefringence:.4f}",
         "" if numbers.two_v_deg is None else f"{numbers.two_v_deg:.0f}°",
         dispersion_quality(mineral),

@@ -66,7 +66,7 @@ def _head(mineral: Mineral) -> Iterator[str]:
         told.append(f"birefringence {facts['birefringence']:.4f}")
     if facts["two_v_deg"] is not None:
         told.append(f"2V {facts['two_v_deg']:.1f}°")
-    yield f"at {facts['indices']['wavelength_nm']} nm: {', '.join(told)}"
+    yield f"at {facts['indices']['wavelength_nm']} nm{'*' if facts['clamped'] else ''}: {', '.join(told)}"
 
 
 def _group(mineral: Mineral) -> str:
@@ -93,7 +93,7 @@ def _optics(optics: MineralOptics) -> Iterator[str]:
     widths = {place: max(len(row[place]) for row in rows) for place in used}
     for row in rows:
         yield "  ".join(row[place].rjust(widths[place]) for place in used).rstrip()
-    if optics.clamped.any():
+    if optics.clamped.any() or derived(optics.mineral)["clamped"]:
         yield "* outside the range of a curve: its value at the nearer end"
 
 

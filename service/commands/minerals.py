@@ -62,8 +62,8 @@ def list_minerals(
 ) -> None:
     """List the minerals that fulfil every condition; without any, all of them.
 
-    Facts are those at 589.3 nm. A table on a terminal, aligned text elsewhere. ISOGYRE_MINERALS_DIR names a folder of
-    minerals of your own.
+    Facts are those at 589.3 nm; * where this wavelength lies outside the range of a curve, whose nearer end stands for
+    it. A table on a terminal, aligned text elsewhere. ISOGYRE_MINERALS_DIR names a folder of minerals of your own.
     """
     from minerals_db.query import Query
     from service.minerals.parameters import option, read_parameters

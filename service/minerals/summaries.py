@@ -16,7 +16,7 @@ _INDEX_DIGITS, _ANGLE_DIGITS = 6, 2
 
 COLUMNS = (
     "id", "name_en", "name_ru", "kind", "variety_of", "group", "formula", "system", "point_group", "optical_class",
-    "optic_sign", "n", "n_o", "n_e", "n_alpha", "n_beta", "n_gamma", "birefringence", "two_v_deg",
+    "optic_sign", "n", "n_o", "n_e", "n_alpha", "n_beta", "n_gamma", "clamped", "birefringence", "two_v_deg",
     "density_min_g_per_cm3", "density_max_g_per_cm3", "hardness_min_mohs", "hardness_max_mohs", "colours",
     "pleochroism", "dispersion_quality", "colour_quality", "origin",
 )  # fmt: skip
@@ -27,7 +27,8 @@ def derived(mineral: Mineral, numbers: Facts | None = None) -> dict[str, Any]:
     """Return what follows from an entry: indices at the D line, birefringence, 2V; quality and origin of its data.
 
     Indices stand under the names of their curves beside ``wavelength_nm``; there are none where a curve refuses the D
-    line. ``two_v_deg`` is the acute angle, null unless the mineral is biaxial.
+    line, and ``clamped`` where it lies outside a curve's range, whose nearer end then stands for it. ``two_v_deg`` is
+    the acute angle, null unless the mineral is biaxial.
     """
     numbers = numbers or facts(mineral)
     return {
@@ -35,6 +36,7 @@ def derived(mineral: Mineral, numbers: Facts | None = None) -> dict[str, Any]:
             "wavelength_nm": SODIUM_D_NM,
             **{axis: round(n, _INDEX_DIGITS) for axis, n in numbers.indices.items()},
         },
+        "clamped": numbers.clamped,
         "birefringence": _rounded(numbers.birefringence, _INDEX_DIGITS),
         "two_v_deg": _rounded(numbers.two_v_deg, _ANGLE_DIGITS),
         "quality": {"dispersion": dispersion_quality(mineral), "colour": colour_quality(mineral)},

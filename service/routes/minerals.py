@@ -40,13 +40,13 @@ class MineralsRequest(Query):
     """What the list of minerals is asked for."""
 
     limit: int | None = Field(
-        None,
+        default=None,
         ge=1,
         le=MAX_LIMIT,
         description=f"Most minerals of a page; {DEFAULT_LIMIT} unless it is said, and as CSV all of them",
     )
     cursor: str | None = Field(
-        None, max_length=1000, description="Where to go on, as `links.next` says; as long as the data stay"
+        default=None, max_length=1000, description="Where to go on, as `links.next` says; as long as the data stay"
     )
     format: _Format = None
 
@@ -70,7 +70,7 @@ class OpticsRequest(BaseModel):
         BeforeValidator(_wavelengths),
         WithJsonSchema({"type": "string", "default": "486.1,589.3,656.3", "examples": ["400,500,600", "400:700:10"]}),
     ] = Field(
-        (486.1, 589.3, 656.3),
+        default=(486.1, 589.3, 656.3),
         description="Vacuum wavelengths, nm: numbers with commas between, start:stop:step with both ends; at most "
         f"{MAX_WAVELENGTHS}",
     )

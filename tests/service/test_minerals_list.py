@@ -44,7 +44,7 @@ def test_minerals_are_listed_with_what_a_choice_needs(client: TestClient) -> Non
     # Every handbook: 1.658 and 1.486 at the D line.
     assert calcite["indices"] == pytest.approx({"wavelength_nm": 589.3, "o": 1.6583, "e": 1.4863}, abs=3e-4)
     assert calcite["birefringence"] == pytest.approx(0.172, abs=5e-4)
-    assert calcite["two_v_deg"] is None
+    assert (calcite["two_v_deg"], calcite["clamped"]) == (None, False)
     assert client.get(calcite["links"]["self"]).json()["id"] == "calcite"
     assert client.get(calcite["links"]["optics"]).json()["mineral"] == "calcite"
     topaz = next(mineral for mineral in minerals if mineral["id"] == "topaz")
