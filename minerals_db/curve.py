@@ -10,16 +10,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 from pydantic import Field, model_validator
 
 from minerals_db.fields import Known, Number, Positive
-
-if TYPE_CHECKING:
-    from scipy.interpolate import PchipInterpolator
+from minerals_db.monotone import MonotoneCubics
 
 __all__ = ["Curve", "FloatArray", "OutsideRangeError", "Table"]
 
@@ -100,7 +98,7 @@ class Curve(Known, ABC):
 
 
 class Table(Curve):
-    """Measured values, joined by monotone cubics (PCHIP; Fritsch and Carlson, SIAM J. Numer. Anal. 17, 238 (1980))."""
+    """Measured values, joined by monotone cubics (`minerals_db.monotone`)."""
 
     values_field: ClassVar[str]
     """Name of the field that holds the values."""
@@ -123,19 +121,12 @@ class Table(Curve):
         return self
 
     @cached_property
-    def _curve(self) -> PchipInterpolator:
-        from scipy.interpolate import PchipInterpolator  # 0.3 s: only for those who use a table
-
-        return PchipInterpolator(np.asarray(self.wavelengths_nm), np.asarray(self._values))
+    def _curve(self) -> MonotoneCubics:
+        return MonotoneCubics(np.asarray(self.wavelengths_nm), np.asarray(self._values))
 
     def _value(self, wavelength_nm: FloatArray) -> FloatArray:
-        known, values = np.asarray(self.wavelengths_nm), np.asarray(self._values)
-        place = np.searchsorted(known, wavelength_nm).clip(max=known.size - 1)
-        tabulated = known[place] == wavelength_nm
-        if tabulated.all():  # the checks of the schema, at the D line: they must not cost the import of SciPy
-            return np.asarray(values[place])
-        return np.where(tabulated, values[place], self._curve(wavelength_nm))
+        return self._curve.value(wavelength_nm)
 
     def _slope_per_nm(self, wavelength_nm: FloatArray) -> FloatArray:
         """Return the derivative of the cubics by the wavelength (1/nm) inside the range; NaN of NaN."""
-        return np.asarray(self._curve(wavelength_nm, 1), dtype=np.float64)
+        return self._curve.slope(wavelength_nm)
