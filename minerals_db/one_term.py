@@ -8,6 +8,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
+from minerals_db.fields import Key
 from minerals_db.formulas import SquaredFormula
 from minerals_db.refractive_index import FRAUNHOFER_NM
 from minerals_db.terms import ResonanceUm2, Term
@@ -31,6 +32,9 @@ class OneTerm(SquaredFormula):
     n_f_minus_n_c: Annotated[
         float, Field(strict=True, allow_inf_nan=False, gt=0.0, lt=1.0, description="At 486.13 and 656.28 nm")
     ]
+    dispersion_source: Key | None = Field(
+        None, description="Key of the source of n_F - n_C, where it is not that of n_D"
+    )
 
     @cached_property
     def resonance(self) -> ResonanceUm2:

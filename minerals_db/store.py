@@ -152,10 +152,10 @@ def _own_sources(known: Mapping[str, _Fields], entry: _Fields) -> _Fields:
 
 
 def _named_sources(node: object, path: tuple[str, ...] = ()) -> Iterator[tuple[str, str]]:
-    """Yield the place and the key of every ``source`` and ``via`` in a file."""
+    """Yield the place and the key of every source that a file names."""
     if isinstance(node, dict):
         for field, child in node.items():
-            if field in ("source", "via") and isinstance(child, str):
+            if field in ("source", "dispersion_source", "via") and isinstance(child, str):
                 yield ".".join((*path, field)), child
             else:
                 yield from _named_sources(child, (*path, str(field)))

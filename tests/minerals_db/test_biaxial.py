@@ -59,10 +59,6 @@ def test_two_v_lies_where_others_measured_it(mineral: str, least: float, most: f
     assert least < two_v_z_deg(minerals_db.mineral(mineral), 589.3) < most, source
 
 
-def test_every_biaxial_mineral_has_its_two_v_compared() -> None:
-    assert {row[0] for row in RANGES} == set(BIAXIAL)
-
-
 @pytest.mark.parametrize("mineral_id", BIAXIAL)
 def test_optic_sign_is_that_of_two_v(mineral_id: str) -> None:
     mineral = minerals_db.mineral(mineral_id)
@@ -100,16 +96,12 @@ def test_orientation_in_the_setting_of_the_cell(
     assert np.all(beta < gamma)
 
 
-def test_every_biaxial_mineral_has_its_orientation_compared() -> None:
-    assert {row[0] for row in ORIENTATIONS} == set(BIAXIAL)
-
-
 ARAGONITE = minerals_db.mineral("aragonite").model_dump(mode="json")
 CALCITE = minerals_db.mineral("calcite").model_dump(mode="json")
 FAULTS = [
     (ARAGONITE, {"optic_sign": "positive"}, "positive, but n_a is 1.68157, n_b is 1.68589, n_c is 1.53013 at 589.3 nm"),
     (ARAGONITE, {"optic_sign": None}, "a biaxial mineral has an optic sign"),
-    (ARAGONITE, {"orientation": None}, "an orthorhombic mineral has an orientation"),
+    (ARAGONITE, {"orientation": None}, "orthorhombic minerals have an orientation with the fields alpha, beta"),
     (ARAGONITE, {"orientation": {**ARAGONITE["orientation"], "alpha": "a"}}, "a, b, c in some order, not aab"),
     (
         ARAGONITE,
@@ -118,7 +110,7 @@ FAULTS = [
     ),
     (ARAGONITE, {"orientation": {**ARAGONITE["orientation"], "alpha": "d"}}, "Input should be 'a', 'b' or 'c'"),
     (ARAGONITE, {"dispersion": CALCITE["dispersion"]}, "orthorhombic minerals have the indices a, b, c, not e, o"),
-    (CALCITE, {"orientation": ARAGONITE["orientation"]}, "an orthorhombic mineral has an orientation, and no other"),
+    (CALCITE, {"orientation": ARAGONITE["orientation"]}, "a trigonal crystal has none"),
 ]
 
 
@@ -146,6 +138,31 @@ def test_sign_turns_where_two_v_is_a_right_angle() -> None:
 
     for beta, sign, other in ((middle - 1e-6, "positive", "negative"), (middle + 1e-6, "negative", "positive")):
         dispersion = {"c": constant(alpha), "a": constant(beta), "b": constant(gamma)}
-        assert Mineral.model_validate(ARAGONITE | {"dispersion": dispersion, "optic_sign": sign})
+        changed = ARAGONITE | {"dispersion": dispersion, "axial_angle": []}
+        assert Mineral.model_validate(changed | {"optic_sign": sign})
         with pytest.raises(ValidationError, match=f"{other}, but"):
-            Mineral.model_validate(ARAGONITE | {"dispersion": dispersion, "optic_sign": other})
+            Mineral.model_validate(changed | {"optic_sign": other})
+
+
+@pytest.mark.parametrize(
+    ("interval", "bisectrix", "disagreement", "said"),
+    [
+        ([17.0, 19.0], "alpha", None, None),
+        ([161.0, 163.0], "gamma", None, None),  # the same angle, about the other bisectrix
+        ([17.0, 19.0], "gamma", None, "2V_gamma = 162.2 at 589.3 nm, 143.2 outside the interval; more than 5 needs"),
+        ([30.0, 31.0], "alpha", None, "12.2 outside"),
+        ([30.0, 31.0], "alpha", "Other crystals.", None),
+        ([22.0, 23.0], "alpha", None, None),  # within the bound
+        ([17.0, 19.0], "alpha", "Other crystals.", "the disagreement is none"),
+    ],
+)
+def test_measured_axial_angle(
+    interval: list[float], bisectrix: str, disagreement: str | None, said: str | None
+) -> None:
+    angle = {"two_v_deg": interval, "bisectrix": bisectrix, "source": "rudberg-1828", "status": "published"}
+    changed = ARAGONITE | {"axial_angle": [angle | {"disagreement": disagreement}]}
+    if said is None:
+        assert Mineral.model_validate(changed)
+    else:
+        with pytest.raises(ValidationError, match=said):
+            Mineral.model_validate(changed)
