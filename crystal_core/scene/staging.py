@@ -16,8 +16,8 @@ from crystal_core.geometry.lattice import direct_basis, face_normal
 from crystal_core.materials import medium, principal_indices
 from crystal_core.optics import Medium
 from crystal_core.scene.description import Camera, Page, Scene, Shape
-from crystal_core.scene.printed_page import printed_digits
-from crystal_core.scene.texture import MAX_PIXELS, Texture, decode_texture, read_asset
+from crystal_core.scene.prints import decoded_print, with_marks
+from crystal_core.scene.texture import Texture, read_asset
 
 __all__ = [
     "StagedCamera",
@@ -29,9 +29,6 @@ __all__ = [
 ]
 
 Real = NDArray[np.float64]
-
-TEXELS_PER_MARK = 8.0
-"""Texels across a mark at least: its covered rim then keeps its centre to a hundredth of a texel."""
 
 
 @dataclass(frozen=True)
@@ -180,49 +177,11 @@ def _body(shape: Shape, mineral: minerals_db.Mineral) -> tuple[ConvexPolyhedron,
 
 
 def _page(page: Page, assets: Path | None) -> StagedPage:
-    if page.texture == "digits":
-        texels = printed_digits()
-    else:
-        texels = decode_texture(read_asset(assets, page.texture, "/page/texture"), "/page/texture")
-    texture = Texture(texels, page.width_mm)
+    data = None if page.texture == "digits" else read_asset(assets, page.texture, "/page/texture")
+    texture = Texture(decoded_print(data, "/page/texture"), page.width_mm)
     if page.marks_mm:
-        texture = Texture(_with_marks(texture, page.marks_mm, page.mark_diameter_mm), page.width_mm)
+        texture = with_marks(texture, page.marks_mm, page.mark_diameter_mm, "/page")
     return StagedPage(texture, page.table_reflectance)
-
-
-def _with_marks(texture: Texture, marks_mm: tuple[tuple[float, float], ...], diameter_mm: float) -> NDArray[np.float32]:
-    """Return the texels with black discs; a texel on the rim is covered by the part of it that the disc covers."""
-    texels = _fine_enough(texture, diameter_mm / TEXELS_PER_MARK)
-    texture = Texture(texels, texture.width_mm)
-    rows, columns = texels.shape[:2]
-    radius = 0.5 * diameter_mm / texture.texel_mm
-    grid = (np.arange(16) + 0.5) / 16
-    for number, (x, y) in enumerate(marks_mm):
-        column = (x + 0.5 * texture.width_mm) / texture.texel_mm
-        row = (0.5 * texture.height_mm - y) / texture.texel_mm
-        if not (radius < column < columns - radius and radius < row < rows - radius):
-            raise InputError.at(f"/page/marks_mm/{number}", "the mark does not lie on the page")
-        i0, i1 = int(row - radius), int(np.ceil(row + radius))
-        j0, j1 = int(column - radius), int(np.ceil(column + radius))
-        dy = (np.arange(i0, i1)[:, None] + grid - row).reshape(-1, 1)
-        dx = (np.arange(j0, j1)[:, None] + grid - column).reshape(1, -1)
-        inside = (dx * dx + dy * dy <= radius * radius).reshape(i1 - i0, 16, j1 - j0, 16)
-        texels[i0:i1, j0:j1] *= (1.0 - inside.mean(axis=(1, 3)))[:, :, None].astype(np.float32)
-    return texels
-
-
-def _fine_enough(texture: Texture, texel_mm: float) -> NDArray[np.float32]:
-    """Return a copy of the texels, or the same reflectance on finer ones if they are wider than `texel_mm`."""
-    factor = int(np.ceil(texture.texel_mm / texel_mm))
-    rows, columns = texture.texels.shape[0] * factor, texture.texels.shape[1] * factor
-    if factor == 1:
-        return texture.texels.copy()
-    if rows * columns > MAX_PIXELS:
-        raise InputError.at("/page/mark_diameter_mm", "the marks are too small for a page of this width")
-    x = ((np.arange(columns) + 0.5) / columns - 0.5) * texture.width_mm
-    y = (0.5 - (np.arange(rows) + 0.5) / rows) * texture.height_mm
-    values = texture.average(np.tile(x, rows), np.repeat(y, columns), 0.0)
-    return np.ascontiguousarray(np.moveaxis(values.reshape(-1, rows, columns), 0, -1), np.float32)
 
 
 def _camera(camera: Camera) -> StagedCamera:
