@@ -42,10 +42,10 @@ def read_wavelengths(text: str) -> tuple[float, ...]:
                 raise ValueError(f"{part.strip()}: must not fall, from {start} to {stop}")
             if step <= 0:
                 raise ValueError(f"{part.strip()}: the step must be above zero")
-            count = (stop - start) / step + 1
-            if count > MAX_WAVELENGTHS:
+            step = min(step, Decimal(LONGEST_NM))  # products of it stay numbers
+            if step * MAX_WAVELENGTHS <= stop - start:
                 raise ValueError(f"{part.strip()}: at most {MAX_WAVELENGTHS} wavelengths are answered at once")
-            found += [start + index * step for index in range(int(count))]
+            found += [start + index * step for index in range(int((stop - start) / step) + 1)]
         else:
             raise ValueError(f"{part.strip()}: must be a wavelength in nm or start:stop:step")
         if len(found) > MAX_WAVELENGTHS:

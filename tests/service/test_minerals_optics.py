@@ -204,6 +204,7 @@ def test_a_wavelength_that_a_curve_refuses_is_said_with_its_curve() -> None:
         ("400:700:100", [400, 500, 600, 700]),
         ("400:750:100", [400, 500, 600, 700]),
         ("400:400:1", [400]),
+        ("400:700:1e999999", [400]),
         ("380:380.3:0.1", [380, 380.1, 380.2, 380.3]),  # in decimals, so that the end is met
         ("700,400:500:50,380", [700, 400, 450, 500, 380]),
         ("5e2", [500]),
@@ -236,8 +237,11 @@ def test_as_many_wavelengths_as_are_allowed(client: TestClient) -> None:
         ("400:700:10:1", "must be a wavelength in nm or start:stop:step"),
         ("400:700:0", "the step must be above zero"),
         ("400:700:-1", "the step must be above zero"),
+        ("400:700:1e-999999", f"at most {MAX_WAVELENGTHS} wavelengths"),
         ("400:700:1e-300", f"at most {MAX_WAVELENGTHS} wavelengths"),
         ("400:1399:1,400:1400:1", f"at most {MAX_WAVELENGTHS} wavelengths"),
+        ("1e99999999999999999999", "is no number"),
+        ("snan", "'snan' is no finite number"),
         ("1e999999999", "must be from 10 to 100000 nm"),
     ],
 )
