@@ -16,8 +16,12 @@ from pathlib import Path
 PICTURES = Path(__file__).resolve().parent.parent / "docs" / "pictures"
 
 RENDERED = {
-    # The picture of README.md, by the command that stands there.
+    # The pictures of README.md, by the commands that stand there.
     "rotating-calcite.webp": ("", "sequence.webp"),
+    "tanzanite.webp": (
+        "--set mineral=tanzanite --set analyser_deg=0 --set first_angle_deg=45 --frames 24 --size 320x320",
+        "sequence.webp",
+    ),
     # That of docs/tour.md: the same bits as the program's.
     "tour.png": ("--set first_angle_deg=40 --frames 1 --size 320x320", "frame-0000.png"),
 }
