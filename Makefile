@@ -47,6 +47,7 @@ test-all: check
 benchmarks: .venv/benchmark.stamp
 	$(BIN)/python -m benchmarks.rotating_calcite
 	$(BIN)/python -m benchmarks.interface
+	$(BIN)/python -m benchmarks.minerals
 
 # Needs uv on the PATH. The locks carry hashes and no address of any registry.
 lock:
