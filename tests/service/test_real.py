@@ -86,7 +86,6 @@ BAD: dict[str, tuple[dict[str, Any], set[str]]] = {
     "demonstration": ({"demonstration": "rotating-cheese"}, {"/demonstration"}),
     "no demonstration": ({"demonstration": None}, {"/demonstration"}),
     "mineral": ({"parameters": {"mineral": "kryptonite"}}, {"/parameters/mineral"}),
-    "biaxial mineral": ({"parameters": {"mineral": "topaz"}}, {"/parameters/mineral"}),
     "parameter": ({"parameters": {"colour": "red"}}, {"/parameters/colour"}),
     "parameters": ({"parameters": []}, {"/parameters"}),
     "axis": ({"parameters": {"axis_tilt_deg": "steep"}}, {"/parameters/axis_tilt_deg"}),
