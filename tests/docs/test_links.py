@@ -59,6 +59,7 @@ DRAWN = {
     "draw_conventions.py": ("frames.svg", "waves.svg"),
     "draw_backward_rays.py": ("backward-rays.svg",),
     "draw_indicatrix.py": ("indicatrix.svg",),
+    "draw_minerals.py": ("chromium.svg", "orientation.svg"),
     "draw_plates.py": ("plates.svg",),
 }
 """The scripts of tools/ and the drawings that they make."""
