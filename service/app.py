@@ -14,7 +14,7 @@ from fastapi.concurrency import run_in_threadpool
 import service
 from crystal_core.errors import InputError
 from service.problems import Problem, add_handlers
-from service.routes import catalogue, health, minerals, optics, renders
+from service.routes import catalogue, habits, health, minerals, optics, renders
 from service.settings import Settings
 from service.shield import Shield
 from service.workshop import Workshop
@@ -75,7 +75,7 @@ def create_app(settings: Settings, *, workshop: Workshop | None = None) -> FastA
         lifespan=lifespan,
     )
     app.state.workshop = shop
-    for module in (catalogue, minerals, renders, optics, health):
+    for module in (catalogue, minerals, habits, renders, optics, health):
         app.include_router(module.router)
     app.frontend("/", directory=page_folder(), fallback=None, check_dir=True)
     _describe_answers(app)

@@ -18,6 +18,7 @@ from service.commands.minerals import minerals
 from service.commands.plate import plate
 from service.commands.render import render
 from service.commands.serve import serve
+from service.commands.specimen import specimen
 from service.commands.wave_surface import wave_surface
 
 __all__ = ["main", "run"]
@@ -35,6 +36,7 @@ app.command()(interface)
 app.command()(plate)
 app.command("wave-surface")(wave_surface)
 app.add_typer(minerals, name="minerals")
+app.command()(specimen)
 app.command()(serve)
 
 

@@ -111,6 +111,7 @@ _TITLES = {
     "not-yet": "Not ready yet",
     "unknown-render": "No such render",
     "unknown-mineral": "No such mineral",
+    "unknown-habit": "No such habit",
     "rendering-failed": "Rendering failed",
     "internal": "The service has failed",
 }

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crystal_core.errors import InputError
-from crystal_core.geometry.habit import Form, centroid, check_size, grown, scaled
+from crystal_core.geometry.habit import Form, check_indices, check_size, grown, scaled
 from crystal_core.geometry.half_spaces import bounded_body, is_bounded
 from crystal_core.geometry.lattice import Lattice
 from crystal_core.geometry.point_groups import PointGroup
@@ -57,15 +57,17 @@ def cleavage_solid(
         At the pointer: the planes enclose no body. At ``/spacing_mm``: not a length, not as many as there are pairs, or
         one so large that its faces lie outside the others.
     """
+    for hkl in cleavages:
+        check_indices(hkl, pointer)
     told = " and ".join(f"{{{hkl_label(hkl)}}}" for hkl in cleavages)
     if not cleavages or not cleavage_closes(lattice, group, cleavages):
         raise InputError.at(pointer, f"the planes of cleavage {told} enclose no body: it comes off in plates or rods")
-    solid = grown(lattice, group.laue, [Form(hkl, 0.5) for hkl in cleavages], pointer=pointer)
+    solid = grown(lattice, group.laue, [Form(hkl, 1.0) for hkl in cleavages], pointer=pointer)
     body = solid.body
     pairs = [(face, int(other)) for face, other in enumerate(body.parallel_face) if face < other]
     if isinstance(spacing_mm, int | float):
         check_size(float(spacing_mm), f"{pointer}/spacing_mm")
-        return scaled(solid, float(spacing_mm), centroid(body))
+        return scaled(solid, 0.5 * float(spacing_mm), np.zeros(3))
     if len(spacing_mm) != len(pairs):
         raise InputError.at(
             f"{pointer}/spacing_mm", f"{told} has {len(pairs)} pairs of parallel faces, not {len(spacing_mm)}"

@@ -17,9 +17,28 @@ from crystal_core.geometry.point_groups import PointGroup
 from crystal_core.geometry.polyhedron import ConvexPolyhedron
 from crystal_core.geometry.solid import Hkl, Solid, hkl_label
 
-__all__ = ["Form", "centroid", "check_size", "diameter", "grown", "habit_solid", "scaled"]
+__all__ = [
+    "MAX_SIZE_MM",
+    "MIN_SIZE_MM",
+    "Form",
+    "centroid",
+    "check_indices",
+    "check_size",
+    "diameter",
+    "grown",
+    "habit_solid",
+    "scaled",
+]
 
 Real = NDArray[np.float64]
+
+MIN_SIZE_MM, MAX_SIZE_MM = 1e-6, 1e6
+"""Bodies from a nanometre to a kilometre."""
+
+_MOST_FORMS = 40
+_HIGHEST_INDEX = 1000
+_WIDEST_RATIO = 1e4
+"""Of the greatest central distance to the least: beyond, a plate would be thinner than rounding lets planes meet."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +96,7 @@ def habit_solid(
 
 
 def grown(lattice: Lattice, group: PointGroup, forms: Sequence[Form], *, pointer: str = "") -> Solid:
-    """Return the polyhedron of forms about their common centre, in units of their central distances.
+    """Return the polyhedron of forms about their common centre, the farthest faces at distance 1.
 
     Raises
     ------
@@ -95,6 +114,7 @@ def grown(lattice: Lattice, group: PointGroup, forms: Sequence[Form], *, pointer
             f"{pointer}/forms", f"{told} in class {group.symbol} do not close: the body would be without end"
         )
     distances = np.array([forms[owner].central_distance for owner in owners])
+    distances /= distances.max()
     body, kept = bounded_body(normals, distances, np.zeros(3))
     # Faces of a form all bound the body or none does: it has their symmetry.
     idle = sorted(set(owners) - {owners[face] for face in kept})
@@ -113,16 +133,18 @@ def grown(lattice: Lattice, group: PointGroup, forms: Sequence[Form], *, pointer
 
 def _faces(group: PointGroup, forms: Sequence[Form], pointer: str) -> tuple[list[Hkl], list[int]]:
     """Return all faces and the form of each; raise for what is no form, and for a face that comes twice."""
-    if not forms:
-        raise InputError.at(f"{pointer}/forms", "at least one form is needed")
+    if not 1 <= len(forms) <= _MOST_FORMS:
+        raise InputError.at(f"{pointer}/forms", f"must be 1 to {_MOST_FORMS} forms, not {len(forms)}")
     faults: list[Fault] = []
     faces: list[Hkl] = []
     owners: list[int] = []
     seen: dict[Hkl, int] = {}
     for number, form in enumerate(forms):
         where = f"{pointer}/forms/{number}"
-        if not any(form.hkl):
-            faults.append(Fault(f"{where}/hkl", "(0 0 0) is no face"))
+        try:
+            check_indices(form.hkl, f"{where}/hkl")
+        except InputError as error:
+            faults += error.faults
             continue
         if not (isfinite(form.central_distance) and form.central_distance > 0.0):
             faults.append(Fault(f"{where}/central_distance", f"must be greater than 0, not {form.central_distance!r}"))
@@ -139,13 +161,26 @@ def _faces(group: PointGroup, forms: Sequence[Form], pointer: str) -> tuple[list
             owners.append(number)
     if faults:
         raise InputError(faults)
+    distances = [form.central_distance for form in forms]
+    if max(distances) > _WIDEST_RATIO * min(distances):
+        raise InputError.at(
+            f"{pointer}/forms", f"central distances may differ by a factor of {_WIDEST_RATIO:g} and no more"
+        )
     return faces, owners
 
 
 def check_size(length_mm: float, pointer: str) -> None:
-    """Raise an InputError at the pointer where a length is not a positive number."""
-    if not (isfinite(length_mm) and length_mm > 0.0):
-        raise InputError.at(pointer, f"must be a length greater than 0 mm, not {length_mm!r}")
+    """Raise an InputError at the pointer where a number is not the size of a body."""
+    if not MIN_SIZE_MM <= length_mm <= MAX_SIZE_MM:
+        raise InputError.at(pointer, f"must be a length from {MIN_SIZE_MM:g} to {MAX_SIZE_MM:g} mm, not {length_mm!r}")
+
+
+def check_indices(indices: Hkl, pointer: str) -> None:
+    """Raise an InputError at the pointer where three integers are no indices of a face or direction."""
+    if not any(indices):
+        raise InputError.at(pointer, "(0 0 0) is no face and no direction")
+    if max(map(abs, indices)) > _HIGHEST_INDEX:
+        raise InputError.at(pointer, f"indices are at most {_HIGHEST_INDEX}, not {max(map(abs, indices))}")
 
 
 def diameter(vertices: Real) -> float:

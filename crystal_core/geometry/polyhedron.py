@@ -103,6 +103,31 @@ class ConvexPolyhedron:
         return float(np.sum(a * np.cross(b, c)) / 6.0)
 
     @cached_property
+    def areas_mm2(self) -> Real:
+        """Return the area of each face, shape (F,)."""
+        corners, owners = self.triangles
+        a, b, c = (self.vertices[corners[:, i]] for i in range(3))
+        doubled = np.einsum("ti,ti->t", np.cross(b - a, c - a), self.normals[owners])
+        return np.asarray(0.5 * np.bincount(owners, doubled, minlength=len(self.faces)), np.float64)
+
+    @cached_property
+    def edges(self) -> dict[tuple[int, int], tuple[int, int]]:
+        """Return the two faces at each edge, by the edge's corners in the order in which the first face runs."""
+        owners = {
+            ends: face for face, ring in enumerate(self.faces) for ends in zip(ring, ring[1:] + ring[:1], strict=True)
+        }
+        return {(i, j): (face, owners[j, i]) for (i, j), face in owners.items() if face < owners[j, i]}
+
+    @property
+    def face_count(self) -> int:
+        """Return how many faces it has."""
+        return len(self.faces)
+
+    def normal(self, face: NDArray[np.intp], point: Real) -> Real:  # noqa: ARG002  (curved bodies need the point)
+        """Return outward unit normals, shape (3, N), of faces, shape (N,), at points on them, shape (3, N)."""
+        return self.normals.T[:, face]
+
+    @cached_property
     def parallel_face(self) -> NDArray[np.int32]:
         """Return for each face the index of the face parallel to it, −1 where there is none, shape (F,)."""
         opposite = self.normals @ self.normals.T < -1.0 + 1e-12

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crystal_core.errors import InputError, NotSupportedError
-from crystal_core.geometry.habit import Form, centroid, check_size, diameter, grown, scaled
+from crystal_core.geometry.habit import Form, centroid, check_indices, check_size, diameter, grown, scaled
 from crystal_core.geometry.half_spaces import bounded_body
 from crystal_core.geometry.lattice import Lattice
 from crystal_core.geometry.point_groups import PointGroup
@@ -122,7 +122,7 @@ def twin(
         The individuals have different outlines in the plane of composition: they would not meet in one common face.
     """
     check_size(size_mm, f"{shape_pointer}/size_mm")
-    if (plane_hkl is None) == (axis_uvw is None):
+    if plane_hkl is not None and axis_uvw is not None:
         raise InputError.at(pointer, "a twin law names either a plane or an axis")
     operation, law = _operation(lattice, plane_hkl, axis_uvw, pointer)
     cartesian = group.cartesian(lattice)
@@ -160,14 +160,15 @@ def twin(
 
 def _operation(lattice: Lattice, plane: Hkl | None, axis: Hkl | None, pointer: str) -> tuple[Real, str]:
     """Return the matrix of the law in the crystal frame, and what it is called."""
-    indices = plane if plane is not None else axis
-    if indices is None or not any(indices):
-        raise InputError.at(pointer, "the indices of a twin plane or axis are not all zero")
     if plane is not None:
+        check_indices(plane, f"{pointer}/plane_hkl")
         across = lattice.face_normal(plane)
         return np.eye(3) - 2.0 * np.outer(across, across), f"reflection in ({hkl_label(plane)})"
-    along = lattice.direction(indices)
-    return 2.0 * np.outer(along, along) - np.eye(3), f"half a turn about [{hkl_label(indices)}]"
+    if axis is None:
+        raise InputError.at(pointer, "a twin law names either a plane or an axis")
+    check_indices(axis, f"{pointer}/axis_uvw")
+    along = lattice.direction(axis)
+    return 2.0 * np.outer(along, along) - np.eye(3), f"half a turn about [{hkl_label(axis)}]"
 
 
 def _own_lattice(group: PointGroup, cartesian: Real, operation: Real) -> tuple[Whole, Real, int]:
@@ -192,8 +193,7 @@ def _compositions(
     lattice: Lattice, plane: Hkl | None, axis: Hkl | None, given: Hkl | None, pointer: str
 ) -> Iterator[Hkl]:
     if given is not None:
-        if not any(given):
-            raise InputError.at(f"{pointer}/composition_hkl", "(0 0 0) is no plane")
+        check_indices(given, f"{pointer}/composition_hkl")
         yield given
     elif plane is not None:
         yield plane
