@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Annotated, Any
 
 from pydantic import Field
 
-import minerals_db
+from crystal_core.errors import InputError
 from crystal_core.scene.media import Made
 from crystal_core.scene.orientation import Indices, Orientation, Turn
 from crystal_core.scene.parts import Choice, Coordinate, Location, Name
 from crystal_core.scene.shapes import Shape
+from crystal_core.scene.specimen import habit_of, twin_law
 
 __all__ = ["GAP_MM", "Body", "Twin"]
 
@@ -29,20 +30,16 @@ class Twin(Choice):
     )
     plane_hkl: Indices | None = Field(default=None, description="Twin plane: one individual mirrors the other in it")
     axis_uvw: Indices | None = Field(default=None, description="Twin axis: half a turn about it")
-    contact_hkl: Indices | None = Field(
-        default=None, description="Plane through the centre in which the two meet [default: the twin plane]"
+    composition_hkl: Indices | None = Field(
+        default=None, description="Plane in which the two meet [default: the twin plane, or one along the axis]"
     )
-
-    def after(self) -> Iterator[tuple[Location, str]]:
-        """Ask where the individuals of a twin by an axis meet."""
-        if self.axis_uvw is not None and self.contact_hkl is None:
-            yield ("contact_hkl",), "required with axis_uvw: the plane in which the two individuals meet"
 
 
 class Body(Made):
     """A body: what it is made of, its shape, how its crystal stands and where it is.
 
-    The body is made, turned by `turns` about its centre, one after the other, and moved to its place.
+    The body is made, turned by `turns` about its centre, one after the other, and moved to its place. The centre is the
+    middle of the shape's own frame: the centroid of a crystal.
     """
 
     shape: Shape
@@ -54,7 +51,8 @@ class Body(Made):
     turns: Annotated[tuple[Turn, ...], Field(max_length=20)] = ()
     position_mm: Annotated[tuple[Coordinate, ...], Field(min_length=2, max_length=3)] | None = Field(
         default=None,
-        description="Of the centre: [x, y, z], or [x, y] with rests_on [default: the origin]",
+        description="Of the centre, from the origin, or from the centre of the body that it is inside or joined to: "
+        "[x, y, z]; [x, y] with rests_on [default: 0]",
     )
     rests_on: Name | None = Field(default=None, description="A horizontal surface, or a body on whose top it lies")
     gap_mm: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=1000)] | None = Field(
@@ -96,29 +94,32 @@ class Body(Made):
             direction = None if self.orientation is None else getattr(self.orientation, axis)
             if direction is not None and direction.kind in {"hkl", "uvw"} and not has_cell:
                 yield ("orientation", axis, direction.kind), f"{who} has no lattice"
+        if self.twin is not None and self.shape.habit is None:
+            yield ("twin",), "goes with the shape habit"
+        if entry is None or not has_cell:
+            return
         habit = self.shape.habit
-        if entry is not None and habit is not None and has_cell and habit.forms is None:
-            names = [known.name for known in entry.habits]
-            if not names:
-                yield ("shape", "habit"), f"{self.mineral} has no habit in its entry: give forms"
-            elif habit.name is not None and habit.name not in names:
-                yield ("shape", "habit", "name"), f"{self.mineral} has no such habit; it has {', '.join(names)}"
-        if self.twin is not None:
-            if habit is None or entry is None:
-                yield ("twin",), "goes with the shape habit"
-            elif self.twin.law is not None:
-                yield from self._law_faults(self.twin.law, entry)
+        if habit is not None and habit.forms is None:
+            place: Location = ("shape", "habit") if habit.name is None else ("shape", "habit", "name")
+            yield from _refused(place, lambda: habit_of(entry, habit.name))
+        if self.twin is not None and self.twin.law is not None:
+            law = self.twin.law
+            yield from _refused(("twin", "law"), lambda: twin_law(entry, law))
 
-    def _law_faults(self, wanted: str, entry: minerals_db.Mineral) -> Iterator[tuple[Location, str]]:
-        assert self.twin is not None
-        law = next((twin for twin in entry.twinning if twin.law == wanted), None)
-        if law is None:
-            laws = ", ".join(twin.law for twin in entry.twinning)
-            yield ("twin", "law"), f"{self.mineral} has no such law; {f'it has {laws}' if laws else 'none is known'}"
-        elif law.axis_uvw is not None and self.twin.contact_hkl is None:
-            yield ("twin", "contact_hkl"), "required with a twin axis: the plane in which the two individuals meet"
+    @property
+    def depends_on(self) -> str | None:
+        """Name of what its place counts from: what it rests on, its host, or what it is joined to."""
+        return self.rests_on or self.inside or self.joined_to
 
     @property
     def gap(self) -> float:
         """Height of the lowest point above what it rests on, mm."""
         return GAP_MM if self.gap_mm is None else self.gap_mm
+
+
+def _refused(place: Location, look_up: Callable[[], object]) -> Iterator[tuple[Location, str]]:
+    """Yield the reason why a look-up in the entry fails, if it does."""
+    try:
+        look_up()
+    except InputError as error:
+        yield place, error.faults[0].message

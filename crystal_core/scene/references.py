@@ -24,7 +24,7 @@ def reference_faults(scene: SceneDocument) -> Faults:
             other = getattr(body, key)
             if other is not None and other not in scene.bodies:
                 yield ("bodies", name, key), _unknown(other, "body", list(scene.bodies))
-        yield from _circles(scene, key)
+    yield from _circles(scene)
     yield from _motion_faults(scene)
 
 
@@ -40,17 +40,17 @@ def _resting_faults(scene: SceneDocument) -> Faults:
                 yield place, f"{under} is not horizontal: give position_mm"
         elif under not in scene.bodies:
             yield place, _unknown(under, "surface or body", [*scene.surfaces, *scene.bodies])
-    yield from _circles(scene, "rests_on")
 
 
-def _circles(scene: SceneDocument, key: str) -> Faults:
-    """Yield the bodies that come back to themselves by following `key`."""
-    for name in scene.bodies:
-        seen, at = {name}, getattr(scene.bodies[name], key)
-        while at in scene.bodies and at not in seen:
+def _circles(scene: SceneDocument) -> Faults:
+    """Yield the bodies whose place depends on itself."""
+    for name, body in scene.bodies.items():
+        seen, at = {name}, body.depends_on
+        while at is not None and at in scene.bodies and at not in seen:
             seen.add(at)
-            at = getattr(scene.bodies[at], key)
+            at = scene.bodies[at].depends_on
         if at == name:
+            key = next(key for key in ("rests_on", "inside", "joined_to") if getattr(body, key) is not None)
             yield ("bodies", name, key), f"goes in a circle back to {name}"
 
 

@@ -76,11 +76,15 @@ def _several(value: object) -> object:
 class Cleavage(Part):
     """A body between cleavage planes of the mineral."""
 
+    hkl: Indices | None = Field(
+        default=None, description="One plane of the cleavage [default: the entry's best that encloses a body]"
+    )
+
     spacing_mm: Annotated[
         tuple[Length, ...],
         Field(min_length=1, max_length=12),
         BeforeValidator(_several, json_schema_input_type=Length | tuple[Length, ...]),
-    ] = Field(default=(20.0,), description="Between the two faces of each parallel pair; one number: of all pairs")
+    ] = Field(default=(20.0,), description="Between the faces of each parallel pair; one number: of all pairs")
 
 
 class Box(Part):
