@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from crystal_core.materials import SODIUM_D_NM, axial_dispersion, birefringence, swatches, two_v_deg
@@ -26,7 +26,14 @@ __all__ = ["page", "pictures", "write"]
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 PAGE, PICTURES = "minerals-table.md", Path("pictures") / "minerals"
 
-THICKNESS_MM = 1.0
+THICKNESS_MM, THIN_MM = 1.0, 0.03
+"""Of a small gem, and of a petrographer's thin section, for what is black in a gem."""
+
+BLACK = 0.12
+"""The lightness up to which a colour tells nothing."""
+
+CHIP = (56, 24)
+"""Size of a chip with its margins, pixels: as high as a line of the page, so that it stands beside its index."""
 
 GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "n": "", "o": "o", "e": "e"}
 
@@ -59,9 +66,10 @@ how an entry is made, and what every field of it means.*
   measured, if it is known; 2V<sub>α</sub> and 2V<sub>γ</sub> are the angles about α and γ. A † marks what the indices
   do not agree with; the entry says why. **r > v**: the angle is larger in red light than in violet.
 - **Colours**: daylight through {thickness:g} mm of the crystal that vibrates along each direction, as a dichroscope
-  shows it. Chips that differ make a pleochroic mineral. With a prime (α′, β′, γ′) the directions are those of the
-  absorption, which has a frame of its own in some monoclinic and triclinic crystals. A dash: the entry knows of no
-  absorption, and pictures show it colourless, whatever it looks like in nature.
+  shows it; where all of them are black, those of a thin section of {thin:g} mm follow. Chips that differ make
+  a pleochroic mineral. With a prime (α′, β′, γ′) the directions are those of the absorption, which has a frame of its own
+  in some monoclinic and triclinic crystals. A dash: the entry knows of no absorption, and pictures show it colourless,
+  whatever it looks like in nature.
 - **Data** says how far to trust them, first the dispersion, then the colour:
 
 {trust}
@@ -107,7 +115,7 @@ def page(minerals: Mapping[str, Mineral]) -> str:
     )
     rows = [f"| {' | '.join(row)} |" for row in TRUST]
     trust = "\n".join((rows[0], "|---|---|---|", *rows[1:]))
-    text = [LEGEND.format(counts=_counts(minerals), contents=links, thickness=THICKNESS_MM, trust=trust)]
+    text = [LEGEND.format(counts=_counts(minerals), contents=links, thickness=THICKNESS_MM, thin=THIN_MM, trust=trust)]
     for title, members in sections.items():
         text += [f"## {title}", "", SECTIONS[title], "", *_table(members), ""]
     return "\n".join(text)
@@ -115,7 +123,7 @@ def page(minerals: Mapping[str, Mineral]) -> str:
 
 def pictures(minerals: Mapping[str, Mineral]) -> dict[str, str]:
     """Return the swatches of every mineral that absorbs, SVG by the name of the file."""
-    return {f"{mineral.id}.svg": _svg(_chips(mineral)) for mineral in minerals.values() if mineral.absorption}
+    return {name: _svg(chips) for mineral in minerals.values() for name, _, chips in _swatches(mineral)}
 
 
 def write(folder: Path) -> None:
@@ -268,9 +276,19 @@ def _interval(angle: AxialAngle) -> str:
     return f"{told}{at}{'†' if angle.disagreement else ''}"
 
 
-def _chips(mineral: Mineral) -> list[tuple[str, str]]:
+def _swatches(mineral: Mineral) -> list[tuple[str, float, list[tuple[str, str]]]]:
+    """Return the pictures of a mineral: name of the file, thickness in mm, chips; none if it does not absorb."""
+    if mineral.absorption is None:
+        return []
+    made = [(f"{mineral.id}.svg", THICKNESS_MM, _chips(mineral, THICKNESS_MM))]
+    if all(_lightness(colour) < BLACK for _, colour in made[0][2]):
+        made.append((f"{mineral.id}-thin.svg", THIN_MM, _chips(mineral, THIN_MM)))
+    return made
+
+
+def _chips(mineral: Mineral, thickness_mm: float) -> list[tuple[str, str]]:
     """Return the label and the colour (#rrggbb) of every principal direction, in the order of the indices."""
-    colours = swatches(mineral, THICKNESS_MM)
+    colours = swatches(mineral, thickness_mm)
     orientation = mineral.orientation
     if isinstance(orientation, OrthorhombicOrientation):
         axes = {GREEK[name]: getattr(orientation, name) for name in ("alpha", "beta", "gamma")}
@@ -281,31 +299,38 @@ def _chips(mineral: Mineral) -> list[tuple[str, str]]:
 
 
 def _colours(mineral: Mineral) -> Iterator[str]:
+    """Yield the pictures of a mineral, and what colours it."""
+    made = _swatches(mineral)
     if mineral.absorption is None:
         yield "–"
         return
-    told = ", ".join(f"{label} {colour}".strip() for label, colour in _chips(mineral))
-    yield f'<img src="{(PICTURES / mineral.id).as_posix()}.svg" height="24" alt="{told}">'
+    for name, thickness, chips in made:
+        told = ", ".join(f"{label} {colour}".strip() for label, colour in chips)
+        width, height = CHIP[0], CHIP[1] * len(chips)
+        size = f'width="{width}" height="{height}"'
+        if thickness != THICKNESS_MM:
+            yield f"{thickness:g} mm:"
+        yield f'<img src="{(PICTURES / name).as_posix()}" {size} alt="{thickness:g} mm: {told}">'
     for chromophore in mineral.absorption.chromophores.values():
         yield f"{chromophore.weight_percent:g} wt%\u00a0{_formula(chromophore.formula)}"
 
 
-def _svg(chips: Iterable[tuple[str, str]]) -> str:
-    """Return chips of colour, side by side, each with its label."""
-    width, height, gap = 44, 24, 3
-    parts, total = [], 0
+def _svg(chips: Sequence[tuple[str, str]]) -> str:
+    """Return chips of colour, one below the other, each with its label."""
+    width, height = CHIP
+    parts = []
     for number, (label, colour) in enumerate(chips):
-        left = number * (width + gap)
-        total = left + width
+        top = number * height
         ink = "#1b1d1e" if _lightness(colour) > 0.45 else "#ffffff"
         parts.append(
-            f'<rect x="{left + 0.5}" y="0.5" width="{width - 1}" height="{height - 1}" rx="3" fill="{colour}" '
+            f'<rect x="0.5" y="{top + 1.5}" width="{width - 1}" height="{height - 3}" rx="3" fill="{colour}" '
             'stroke="#8a8f90"/>'
         )
         if label:
-            parts.append(f'<text x="{left + width / 2:g}" y="17" fill="{ink}" text-anchor="middle">{label}</text>')
+            parts.append(f'<text x="{width / 2:g}" y="{top + 17}" fill="{ink}" text-anchor="middle">{label}</text>')
+    total = height * len(chips)
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {total} {height}" width="{total}" height="{height}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {total}" width="{width}" height="{total}" '
         'font-family="DejaVu Serif, Georgia, serif" font-style="italic" font-size="15">'
     )
     return "\n".join((head, *parts, "</svg>\n"))

@@ -65,10 +65,16 @@ def test_every_mineral_has_its_row() -> None:
 def test_swatches_show_the_colours_of_the_library() -> None:
     coloured = [mineral for mineral in builtin_minerals().values() if mineral.absorption is not None]
     assert len(coloured) >= 20
+    thin = 0
     for mineral in coloured:
-        svg = (DOCS / PICTURES / f"{mineral.id}.svg").read_text(encoding="utf-8")
-        shown = [np.array(ImageColor.getrgb(colour)) for colour in re.findall(r'rx="3" fill="(#\w{6})"', svg)]
-        expected = list(swatches(mineral, 1.0).values())
-        assert len(shown) == len(expected)
-        for colour in expected:  # the page has them in the order of the indices
-            assert min(np.abs(one - 255.0 * colour).max() for one in shown) <= 0.51, mineral.id
+        for name, thickness_mm in ((mineral.id, 1.0), (f"{mineral.id}-thin", 0.03)):
+            file = DOCS / PICTURES / f"{name}.svg"
+            if thickness_mm < 1.0 and not file.exists():
+                continue
+            thin += thickness_mm < 1.0
+            shown = re.findall(r'rx="3" fill="(#\w{6})"', file.read_text(encoding="utf-8"))
+            expected = list(swatches(mineral, thickness_mm).values())
+            assert len(shown) == len(expected)
+            for colour in expected:  # the page has them in the order of the indices
+                assert min(np.abs(np.array(ImageColor.getrgb(one)) - 255.0 * colour).max() for one in shown) <= 0.51
+    assert thin >= 1, "biotite is black in a millimetre"
