@@ -90,6 +90,8 @@ def test_the_source_is_another_than_ours(row: dict[str, Any]) -> None:
         carried = mineral.sources[curve.source].via
         assert curve.source not in forbidden
         assert carried is None or carried not in forbidden
+        if row["quantity"] == "two_v_deg":
+            assert "2V is" not in (curve.note or ""), "an index was chosen for the angle"
 
 
 def test_every_tolerance_has_its_reason() -> None:
@@ -97,6 +99,9 @@ def test_every_tolerance_has_its_reason() -> None:
         assert 0.0 < row["tolerance"] <= 5.0
         assert len(DATA["reasons"][row["reason"]]) > 20
         assert row["quantity"] == "two_v_deg" or row["tolerance"] <= 0.05
+        if isinstance(row["value"], list):
+            lowest, highest = row["value"]
+            assert 0.0 < highest - lowest <= (20.0 if row["quantity"] == "two_v_deg" else 0.07), "too wide to say much"
     assert {row["reason"] for row in DATA["values"]} == set(DATA["reasons"]), "none is idle"
     assert {row["source"] for row in DATA["values"] + DATA["disagreements"]} == set(DATA["sources"])
 
