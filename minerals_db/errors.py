@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -75,7 +76,9 @@ class UnknownMineralError(KeyError):
 
     def __str__(self) -> str:
         """Return a sentence: KeyError alone would show the bare key in quotes."""
-        return f"no mineral {self.mineral_id!r}; known: {', '.join(self.known)}"
+        near = difflib.get_close_matches(self.mineral_id.lower(), self.known)
+        meant = f"do you mean {' or '.join(near)}?" if near else f"{len(self.known)} are known, none of them like it"
+        return f"no mineral {self.mineral_id!r}; {meant}"
 
     def __reduce__(self) -> tuple[type[UnknownMineralError], tuple[str, tuple[str, ...]]]:
         """Keep the known ids across process boundaries."""

@@ -61,6 +61,9 @@ def faults_of(name: str, content: object, error: ValidationError) -> Iterator[Da
         What is wrong with it.
     """
     told = error.errors(include_url=False, include_context=False, include_input=False)
+    # Of a list with a wrong item pydantic also says that it has one item less.
+    wrong_inside = {fault["loc"][:-1] for fault in told}
+    told = [fault for fault in told if not (fault["type"] == "too_short" and fault["loc"] in wrong_inside)]
     absent = [fault["loc"] for fault in told if fault["type"] == "missing"]
     for fault in told:
         reason = {"extra_forbidden": "unknown field", "missing": "missing"}.get(fault["type"], fault["msg"])

@@ -140,7 +140,7 @@ class MediumDescription(BaseModel):
     @classmethod
     def _known(cls, value: str | None) -> str | None:
         if value is not None and value not in minerals_db.minerals():
-            raise wrong(f"no mineral {value!r}; known: {', '.join(minerals_db.minerals())}")
+            raise wrong(str(minerals_db.UnknownMineralError(value, minerals_db.minerals())))
         return value
 
     @field_validator("rotation")

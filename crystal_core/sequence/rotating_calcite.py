@@ -12,6 +12,7 @@ from crystal_core.materials import SODIUM_D_NM
 from crystal_core.scene import Camera, Page, PointLight, Scene, Shape, Sky, Specimen, StagedScene
 from crystal_core.scene.description import AnalyserAngle
 from crystal_core.sequence.demonstration import Demonstration, Parameters
+from minerals_db.quality import colour_quality, dispersion_quality
 
 __all__ = ["ROTATING_CALCITE", "RotatingCalcite"]
 
@@ -221,6 +222,10 @@ class RotatingCalcite(Parameters):
         indices = [float(n) for n in staged.specimen.indices(SODIUM_D_NM)]
         facts: dict[str, Any] = {
             "mineral": self.mineral,
+            "data_quality": {
+                "dispersion": dispersion_quality(staged.specimen.mineral),
+                "colour": colour_quality(staged.specimen.mineral),
+            },
             "cut": self.cut,
             "z0_mm": float(body.vertices[:, 2].min()),
             "z1_mm": float(body.vertices[:, 2].max()),

@@ -105,8 +105,6 @@ def show(
     as_json: AsJson = False,
 ) -> None:
     """Show all that is known of a mineral, with sources and statuses, and its optics at wavelengths."""
-    import difflib
-
     import minerals_db
     from service.commands.mineral_page import print_page
     from service.minerals.optics import mineral_optics, read_concentrations
@@ -116,9 +114,7 @@ def show(
     try:
         mineral = minerals_db.mineral(mineral_id)
     except minerals_db.UnknownMineralError as error:
-        near = difflib.get_close_matches(mineral_id.lower(), error.known)
-        meant = f"do you mean {' or '.join(near)}?" if near else "isogyre minerals list tells all there are"
-        raise InputError.at("ID", f"no mineral {mineral_id!r}; {meant}") from None
+        raise InputError.at("ID", f"{error} (see isogyre minerals list)") from None
     texts, faults = _assigned(concentrations or [])
     weight_percent, wrong = read_concentrations(mineral, texts, lambda key: f"--concentration {key}")
     faults += wrong

@@ -54,7 +54,7 @@ PICTURES = {
         # what is asked for
         (["rotating-topaz"], "demonstration: unknown demonstration 'rotating-topaz'; known: rotating-calcite"),
         ([""], "demonstration: unknown demonstration ''"),
-        (["--set", "mineral=unobtainium"], "--set mineral: no mineral 'unobtainium'; known: "),
+        (["--set", "mineral=unobtainium"], "--set mineral: no mineral 'unobtainium'; "),
         (["--set", "mineral=3"], "--set mineral: input should be a valid string, not 3"),
         (["--set", "colour=red"], "--set colour: unknown key"),
         (["--set", "gap_mm"], "--set: must be key=value, not 'gap_mm'"),

@@ -93,7 +93,7 @@ def test_a_document_may_be_spread_over_lines_and_come_by_stdin(
             {"to": {"indices": [1.5, 1.6], "axes": [[1, 0, 0], [0, 1, 0], [0, 0.1, 1]]}},
             "/to/axes: the axes must be ort",
         ),
-        ({"to": {"mineral": "unobtainium"}}, "/to/mineral: no mineral 'unobtainium'; known: "),
+        ({"to": {"mineral": "unobtainium"}}, "/to/mineral: no mineral 'unobtainium'; "),
         ({"to": {"mineral": "calcite", "rotation": [[0] * 3] * 3}}, "/to/rotation: the rotation must be orthonormal"),
         ({"to": {"colour~/": 1}}, "/to/indices: required, unless a mineral is named; /to/colour~0~1: unknown key"),
     ],

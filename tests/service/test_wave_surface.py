@@ -116,6 +116,8 @@ def test_fluorite_is_one_sphere_twice(capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_every_mineral_has_both_surfaces(capsys: pytest.CaptureFixture[str]) -> None:
     for mineral, entry in minerals_db.minerals().items():
+        if not all(curve.covers(589.3, 589.3) for curve in entry.dispersion.values()):
+            continue  # refused, as another test tells
         for kind in ("index", "ray"):
             document = ask(capsys, mineral, "--kind", kind, "--resolution", "2")
             assert len(document["contact_points"]) == {"isotropic": 0, "uniaxial": 2, "biaxial": 4}[entry.optical_class]
@@ -160,7 +162,7 @@ def test_a_ply_file_holds_both_sheets(capsys: pytest.CaptureFixture[str], minera
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["unobtainium"], "mineral: no mineral 'unobtainium'; known: "),
+        (["unobtainium"], "mineral: no mineral 'unobtainium'; "),
         ([""], "mineral: no mineral ''"),
         (["calcite", "--kind", "rays"], "--kind: must be one of index, ray, not 'rays'"),
         (["calcite", "--wavelength-nm", "50"], "--wavelength-nm: the indices of calcite are known from 204 to 2172 nm"),

@@ -59,6 +59,7 @@ export class Caption extends Piece {
       <p>
         ${this.speech.has(key) ? this.say(key, { mineral: lower }) : this.speech.pick(this.studio.demonstration.summary)}
       </p>
+      ${mineral?.quality.colour === "estimated" ? html`<p>${this.say("quality.colour.estimated")}</p>` : nothing}
       ${kind === "uniaxial" ? this.#numbers(scene, name) : nothing}
       ${kind === "isotropic" && scene?.n ? html`<p class="numbers">${this.say("caption.index", { mineral: name, n: this.#n(scene.n) })}</p>` : nothing}
       ${kind === "uniaxial" ? this.#analyser(scene, film.request.parameters.analyser_deg) : nothing}

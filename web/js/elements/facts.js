@@ -1,4 +1,5 @@
-// The chosen mineral: formula, system, optical class and sign, indices, and where its numbers come from.
+// The chosen mineral: formula, system, optical class and sign, indices, how far its numbers can be trusted, and where
+// they come from.
 
 import { html, nothing } from "../../vendor/lit.js";
 import { Piece } from "./piece.js";
@@ -33,6 +34,13 @@ function* nodes(value) {
   for (const below of Object.values(value)) yield* nodes(below);
 }
 
+/** Principal indices by the names that mineralogists give them: n; nₒ, nₑ; or nα, nβ, nγ in rising order. */
+export function namedIndices(indices) {
+  const list = Object.entries(indices);
+  if (list.length < 3) return list.map(([axis, n]) => [{ o: "nₒ", e: "nₑ", n: "n" }[axis], n]);
+  return list.map(([, n]) => n).sort((a, b) => a - b).map((n, place) => [["nα", "nβ", "nγ"][place], n]);
+}
+
 export class Facts extends Piece {
   #phrase(prefix, name) {
     const key = `${prefix}.${name}`;
@@ -43,12 +51,16 @@ export class Facts extends Piece {
     return mineral.optic_sign ? this.#phrase("sign", mineral.optic_sign) : null;
   }
 
-  #indices({ wavelength_nm: wavelength, ...indices }) {
-    const names = { o: "nₒ", e: "nₑ", n: "n" };
-    const list = Object.entries(indices).map(
-      ([axis, n]) => `${names[axis] ?? `n(${axis})`} = ${this.speech.number(n, 4)}`,
-    );
+  #indices({ indices, two_v_deg: twoV }) {
+    const { wavelength_nm: wavelength, ...values } = indices;
+    const list = namedIndices(values).map(([name, n]) => `${name} = ${this.speech.number(n, 4)}`);
+    if (twoV !== null) list.push(`2V = ${this.angle(twoV, 0, 1)}`);
     return this.say("facts.indices", { list: list.join(", "), wavelength: this.speech.number(wavelength, 0, 1) });
+  }
+
+  #quality({ dispersion, colour }) {
+    const lines = [`colour.${colour}`, `dispersion.${dispersion}`].map((key) => `quality.${key}`);
+    return lines.filter((key) => this.speech.has(key)).map((key) => this.say(key)).join(" ");
   }
 
   #source({ part, status, source }) {
@@ -69,7 +81,8 @@ export class Facts extends Piece {
     ];
     return html`<div class="facts">
       <p>${parts.join(" · ")}</p>
-      <p>${entry ? this.#indices(entry.indices) : "\u00a0"}</p>
+      <p>${this.#indices(mineral)}</p>
+      <p class="quality">${this.#quality(mineral.quality)}</p>
       <details ?hidden=${!entry}>
         <summary>${this.say("facts.sources")}</summary>
         <ul>
