@@ -124,3 +124,10 @@ def test_the_list_of_minerals_is_followed_from_page_to_page(visitor: Visitor, mo
     found = module("client", "(await new m.Client(a).minerals()).map((mineral) => mineral.id)", visitor.address)
     assert found == known
     assert len(asked) == math.ceil(len(found) / 7) > 1
+
+
+def test_indices_have_the_names_that_mineralogists_give_them(module: Any) -> None:
+    found = module("elements/facts", "a.map(m.namedIndices)", [{"n": 2.4}, {"o": 1.6, "e": 1.5}])
+    assert found == [[["n", 2.4]], [["nₒ", 1.6], ["nₑ", 1.5]]]
+    biaxial = module("elements/facts", "m.namedIndices(a)", {"a": 1.68, "b": 1.69, "c": 1.53})
+    assert biaxial == [["nα", 1.53], ["nβ", 1.68], ["nγ", 1.69]]
