@@ -58,8 +58,8 @@ class MonotoneCubics:
         before, after = m[:-1], m[1:]
         same = before * after > 0.0  # else the point is an extreme, or the chord level
         w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-        weighted = (w1 + w2)[same] / ((w1[same] / before[same]) + (w2[same] / after[same]))
-        slopes[1:-1][same] = weighted
+        with np.errstate(over="ignore"):  # a chord that is all but level: the mean is its limit, 0
+            slopes[1:-1][same] = (w1 + w2)[same] / ((w1[same] / before[same]) + (w2[same] / after[same]))
         slopes[0] = _end_slope(h[0], h[1], m[0], m[1])
         slopes[-1] = _end_slope(h[-1], h[-2], m[-1], m[-2])
         return slopes
