@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
@@ -24,9 +23,8 @@ _SETS = (("n",), ("o", "e"), ("alpha", "beta", "gamma"))
 def _known(mineral_id: str) -> str:
     known = minerals_db.minerals()
     if mineral_id not in known:
-        near = difflib.get_close_matches(mineral_id, known, 1, 0.75)
-        hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
-        raise PydanticCustomError("scene", "{reason}", {"reason": f"no mineral {mineral_id!r}; {hint}"})
+        reason = str(minerals_db.UnknownMineralError(mineral_id, known))
+        raise PydanticCustomError("scene", "{reason}", {"reason": reason})
     return mineral_id
 
 

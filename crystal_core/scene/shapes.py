@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from crystal_core.scene.orientation import Indices
-from crystal_core.scene.parts import Choice, FileName, Length, Location, Part, Positive
+from crystal_core.scene.parts import BRANCH, Choice, FileName, Length, Location, Part, Positive
 
 __all__ = [
     "MESH_SUFFIXES",
@@ -19,6 +19,7 @@ __all__ = [
     "Brilliant",
     "Cabochon",
     "Cleavage",
+    "Column",
     "Form",
     "Habit",
     "MeshFile",
@@ -34,6 +35,9 @@ __all__ = [
 MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
 
 _Pair = tuple[Length, Length]
+_Percent = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=100)]
+_Slope = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, lt=90)]
+_EdgeMicrometres = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=1e6)]
 _Micrometres = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.1, le=1e6)]
 
 
@@ -93,10 +97,17 @@ class Box(Part):
     size_mm: tuple[Length, Length, Length] = (20.0, 20.0, 20.0)
 
 
-class Plate(Part):
-    """A plane-parallel plate, its faces horizontal: lengths in x and y in mm, thickness in µm."""
+def _tell_plate(value: object) -> str:
+    return BRANCH + ("pair" if isinstance(value, list | tuple) else "diameter")
 
-    size_mm: _Pair = (20.0, 20.0)
+
+class Plate(Part):
+    """A plane-parallel plate, its faces horizontal: thickness in µm."""
+
+    size_mm: Annotated[
+        Annotated[Length, Tag(BRANCH + "diameter")] | Annotated[_Pair, Tag(BRANCH + "pair")],
+        Discriminator(_tell_plate),
+    ] = Field(default=20.0, description="Diameter of a round plate, or lengths along x and y")
     thickness_um: _Micrometres
 
 
@@ -104,7 +115,7 @@ class Wedge(Part):
     """A wedge on a horizontal face, its thickness growing along x from the first value to the second."""
 
     size_mm: _Pair = (30.0, 10.0)
-    thickness_um: tuple[_Micrometres, _Micrometres]
+    thickness_um: tuple[_EdgeMicrometres, _Micrometres] = Field(description="At the ends −x and +x")
 
     def after(self) -> Iterator[tuple[Location, str]]:
         """Refuse a wedge that does not grow."""
@@ -120,6 +131,14 @@ class Prism(Part):
     length_mm: Length = 40.0
 
 
+class Column(Part):
+    """A regular upright prism."""
+
+    sides: Annotated[int, Field(strict=True, ge=3, le=128)] = 6
+    diameter_mm: Length = Field(default=20.0, description="Of the circle through its corners")
+    length_mm: Length = 30.0
+
+
 class Sphere(Part):
     """A sphere."""
 
@@ -127,10 +146,14 @@ class Sphere(Part):
 
 
 class Cabochon(Part):
-    """A dome over a flat base, its outline an ellipse with axes x and y; the dome is up."""
+    """A dome over a flat base, its outline an ellipse with axes x and y; the dome is up.
+
+    An ellipsoid's sides are upright at the base, those of a cap, which a plane cuts off a stretched sphere, lean.
+    """
 
     size_mm: _Pair = (12.0, 10.0)
     height_mm: Length = 5.0
+    profile: Literal["ellipsoid", "cap"] = "ellipsoid"
 
 
 class Brilliant(Part):
@@ -141,16 +164,28 @@ class Brilliant(Part):
 
     diameter_mm: Length = 6.5
     proportions: Literal["tolkowsky", "modern"] = "tolkowsky"
-    table_percent: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=20, le=90)] | None = None
-    crown_deg: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=5, le=60)] | None = None
-    pavilion_deg: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=20, le=60)] | None = None
-    girdle_percent: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=20)] | None = None
+    table_percent: _Percent | None = None
+    crown_deg: _Slope | None = None
+    pavilion_deg: _Slope | None = None
+    girdle_percent: _Percent | None = None
+    star_percent: _Percent | None = None
+    lower_half_percent: _Percent | None = None
+    culet_percent: _Percent | None = None
+    girdle_facets: Annotated[int, Field(strict=True, ge=16, le=128, multiple_of=16)] | None = None
 
 
 class StepCut(Part):
-    """A step (emerald) cut with its table up."""
+    """A step (emerald) cut with its table up; angles are those of the steps, from the girdle on.
+
+    Percentages are of the width, the smaller side. What is left out is that of a usual cut.
+    """
 
     size_mm: _Pair = (9.0, 7.0)
+    table_percent: _Percent | None = None
+    crown_deg: Annotated[tuple[_Slope, ...], Field(min_length=1, max_length=8)] | None = None
+    pavilion_deg: Annotated[tuple[_Slope, ...], Field(min_length=1, max_length=8)] | None = None
+    girdle_percent: _Percent | None = None
+    corner_percent: _Percent | None = None
 
 
 class MeshFile(Part):
@@ -178,6 +213,7 @@ class Shape(Choice):
         "plate",
         "wedge",
         "prism",
+        "column",
         "sphere",
         "cabochon",
         "brilliant",
@@ -191,6 +227,7 @@ class Shape(Choice):
     plate: Plate | None = None
     wedge: Wedge | None = None
     prism: Prism | None = None
+    column: Column | None = None
     sphere: Sphere | None = None
     cabochon: Cabochon | None = None
     brilliant: Brilliant | None = None

@@ -1,0 +1,135 @@
+"""How far bodies reach, what lies in them, and whether two of them overlap.
+
+Two convex bodies overlap where one point is inside both. The point that is deepest inside both is a linear programme
+over their faces; a curved body takes part with planes that touch it, more of them where the last answer was found
+(J. E. Kelley, J. SIAM 8, 703 (1960)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from crystal_core.geometry.cabochon import Cabochon
+from crystal_core.geometry.polyhedron import ConvexPolyhedron
+from crystal_core.geometry.sphere import Sphere
+from crystal_core.scene.staged.flat import Plane
+from crystal_core.scene.staged.rounded import rounded
+
+__all__ = ["Outlines", "contains", "corners", "depth_in", "highest", "overlap", "support"]
+
+Real = NDArray[np.float64]
+Body = ConvexPolyhedron | Sphere | Cabochon
+
+ROUNDS = 100
+"""Of touching planes at most; a sphere on a sphere takes about ten."""
+
+SURE_MM = 1e-8
+"""A deepest point is found when a further touching plane would change its depth by less."""
+
+_AXES = np.concatenate((np.eye(3), -np.eye(3)))
+
+
+class Outlines:
+    """The axis-parallel boxes about bodies."""
+
+    def __init__(self, bodies: Sequence[Body]) -> None:
+        reach = np.array([[highest(body, axis) for axis in _AXES] for body in bodies]).reshape(-1, 6)
+        self._low, self._high = -reach[:, 3:], reach[:, :3]
+
+    def near_pairs(self, gap_mm: float) -> Iterator[tuple[int, int]]:
+        """Yield the pairs i < j whose boxes are not further apart than the gap."""
+        for j in range(1, len(self._low)):
+            apart = np.maximum(self._low[:j] - self._high[j], self._low[j] - self._high[:j]).max(axis=1)
+            yield from ((int(i), j) for i in np.flatnonzero(apart <= gap_mm))
+
+
+def corners(body: Body) -> Real:
+    """Return points that span a body, shape (n, 3): its corners, or those of the box about a curved one."""
+    if isinstance(body, ConvexPolyhedron):
+        return body.vertices
+    low, high = ([sign * highest(body, sign * axis) for axis in np.eye(3)] for sign in (-1.0, 1.0))
+    return np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
+
+
+def support(body: Body, direction: Real) -> Real:
+    """Return the point of a body that lies furthest in a direction, shape (3,)."""
+    if isinstance(body, ConvexPolyhedron):
+        return np.asarray(body.vertices[np.argmax(body.vertices @ direction)], np.float64)
+    return rounded(body).support(direction)
+
+
+def highest(body: Body, direction: Real) -> float:
+    """Return the greatest n·x of a body's points x, for a unit vector n."""
+    return float(direction @ support(body, direction))
+
+
+def contains(body: Body, point: Real) -> bool:
+    """Tell whether a point lies inside or on a body."""
+    if isinstance(body, ConvexPolyhedron):
+        return bool(np.all(body.normals @ point <= body.offsets))
+    normals, offsets = rounded(body).tangents(point)
+    return bool(np.all(normals @ point <= offsets))
+
+
+def depth_in(host: Body, inner: Body) -> float:
+    """Return the least distance from a body to the faces of its host, negative where it sticks out, mm."""
+    if isinstance(host, ConvexPolyhedron):
+        return min(float(o) - highest(inner, n) for n, o in zip(host.normals, host.offsets, strict=True))
+    return rounded(host).room(inner.vertices, lambda direction: support(inner, direction))
+
+
+def overlap(one: Body, other: Body | Plane) -> float:
+    """Return the radius of the largest ball inside both, or inside one with its middle on a plane, mm.
+
+    Negative where they do not meet: then −2 × it is about their distance.
+    """
+    planes = [_planes(one)]
+    on_plane = None
+    if isinstance(other, Plane):
+        level = float(other.normal @ other.centre)
+        straddles = min(highest(one, other.normal) - level, highest(one, -other.normal) + level)
+        if straddles < 0:
+            return straddles
+        planes.append(other.sides)
+        on_plane = other.normal, level
+    else:
+        planes.append(_planes(other))
+    normals, offsets = (np.concatenate(parts) for parts in zip(*planes, strict=True))
+    curved = [rounded(body) for body in (one, other) if isinstance(body, Sphere | Cabochon)]
+    for _ in range(ROUNDS):
+        radius, middle = _deepest(normals, offsets, on_plane)
+        more = [body.tangents(middle) for body in curved]
+        slack = min((float((o - n @ middle).min()) for n, o in more), default=radius)
+        if slack >= radius - SURE_MM:
+            break
+        normals = np.concatenate((normals, *(n for n, _ in more)))
+        offsets = np.concatenate((offsets, *(o for _, o in more)))
+    return radius
+
+
+def _planes(body: Body) -> tuple[Real, Real]:
+    """Return half-spaces that hold a body: its faces, or some planes that touch a curved one."""
+    if isinstance(body, ConvexPolyhedron):
+        return body.normals, body.offsets
+    flat_normals, flat_offsets = rounded(body).flats
+    touching = [highest(body, axis) for axis in _AXES]
+    return np.concatenate((_AXES, flat_normals)), np.concatenate((touching, flat_offsets))
+
+
+def _deepest(normals: Real, offsets: Real, on_plane: tuple[Real, float] | None) -> tuple[float, Real]:
+    """Return the greatest s with normals·x + s ≤ offsets, and its x."""
+    found = linprog(
+        (0.0, 0.0, 0.0, -1.0),
+        A_ub=np.column_stack((normals, np.ones(len(normals)))),
+        b_ub=offsets,
+        A_eq=None if on_plane is None else np.array([[*on_plane[0], 0.0]]),
+        b_eq=None if on_plane is None else np.array([on_plane[1]]),
+        bounds=[(None, None)] * 4,
+    )
+    if found.x is None:
+        raise ArithmeticError(f"the deepest point of two bodies was not found: {found.message}")
+    return float(found.x[3]), np.asarray(found.x[:3])
