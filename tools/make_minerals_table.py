@@ -66,7 +66,7 @@ how an entry is made, and what every field of it means.*
   measured, if it is known; 2V<sub>α</sub> and 2V<sub>γ</sub> are the angles about α and γ. A † marks what the indices
   do not agree with; the entry says why. **r > v**: the angle is larger in red light than in violet.
 - **Colours**: daylight through {thickness:g} mm of the crystal that vibrates along each direction, as a dichroscope
-  shows it; where all of them are black, those of a thin section of {thin:g} mm follow. Chips that differ make a
+  shows it; where one of them is black, those of a thin section of {thin:g} mm follow. Chips that differ make a
   pleochroic mineral. With a prime (α′, β′, γ′) the directions are those of the absorption, which has a frame of its own
   in some monoclinic and triclinic crystals. A dash: the entry knows of no absorption, and pictures show it colourless,
   whatever it looks like in nature.
@@ -281,8 +281,9 @@ def _swatches(mineral: Mineral) -> list[tuple[str, float, list[tuple[str, str]]]
     if mineral.absorption is None:
         return []
     made = [(f"{mineral.id}.svg", THICKNESS_MM, _chips(mineral, THICKNESS_MM))]
-    if all(_lightness(colour) < BLACK for _, colour in made[0][2]):
-        made.append((f"{mineral.id}-thin.svg", THIN_MM, _chips(mineral, THIN_MM)))
+    thin = _chips(mineral, THIN_MM)
+    if min(_lightness(colour) for _, colour in made[0][2]) < BLACK <= max(_lightness(colour) for _, colour in thin):
+        made.append((f"{mineral.id}-thin.svg", THIN_MM, thin))
     return made
 
 
