@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import errno
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -77,9 +76,7 @@ def _entry(mineral_id: str) -> Mineral:
     try:
         return minerals_db.mineral(mineral_id)
     except minerals_db.UnknownMineralError as error:
-        near = difflib.get_close_matches(mineral_id.lower(), error.known)
-        meant = f"do you mean {' or '.join(near)}?" if near else "isogyre minerals list tells all there are"
-        raise InputError.at("MINERAL", f"no mineral {mineral_id!r}; {meant}") from None
+        raise InputError.at("MINERAL", f"{error} (see isogyre minerals list)") from None
 
 
 def _page(document: dict[str, Any]) -> list[str]:
