@@ -1,7 +1,8 @@
 """Which face of a body a ray from outside meets first.
 
 Only that decision is taken here; callers recompute distance and point from the face's exact plane. Embree (float32)
-decides where its wheel exists; the NumPy intersector is its reference in the tests and its stand-in elsewhere.
+decides where its wheel exists; the NumPy intersectors are its reference in the tests and its stand-in elsewhere. Curved
+bodies are met where they are, not where triangles would stand for them.
 """
 
 from __future__ import annotations
@@ -12,9 +13,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crystal_core.geometry.polyhedron import ConvexPolyhedron
+from crystal_core.geometry.body import Body
+from crystal_core.geometry.cabochon import Cabochon
+from crystal_core.geometry.mesh import Mesh
+from crystal_core.geometry.sphere import Sphere
 
-__all__ = ["EmbreeFinder", "FaceFinder", "NumpyFinder", "face_finder"]
+__all__ = ["EmbreeFinder", "ExactFinder", "FaceFinder", "NumpyFinder", "TreeFinder", "face_finder"]
 
 Real = NDArray[np.float64]
 
@@ -27,17 +31,43 @@ class FaceFinder(Protocol):
         ...
 
 
-def face_finder(body: ConvexPolyhedron) -> FaceFinder:
-    """Return Embree's finder where its wheel is installed, else NumPy's."""
+def face_finder(body: Body) -> FaceFinder:
+    """Return the finder of a curved body, or Embree's where its wheel is installed, else NumPy's."""
+    if isinstance(body, Sphere | Cabochon):
+        return ExactFinder(body)
     if importlib.util.find_spec("embreex") is not None:
         return EmbreeFinder(body)
-    return NumpyFinder(body)
+    return TreeFinder(body) if isinstance(body, Mesh) else NumpyFinder(body)
+
+
+class ExactFinder:
+    """Where lines enter a curved body, in float64."""
+
+    def __init__(self, body: Sphere | Cabochon) -> None:
+        self._body = body
+
+    def first_face(self, origin: Real, direction: Real) -> NDArray[np.int32]:
+        """Return the index of the first face hit, −1 for a miss, shape (N,); rays of shape (3, N)."""
+        enters, leaves, entry, exit_ = self._body.span(origin, direction)
+        met = (enters < leaves) & (leaves > 0.0)
+        return np.where(met, np.where(enters > 0.0, entry, exit_), -1).astype(np.int32)
+
+
+class TreeFinder:
+    """The tree of a mesh, in float64; rays from inside meet nothing before they have left it."""
+
+    def __init__(self, body: Mesh) -> None:
+        self._body = body
+
+    def first_face(self, origin: Real, direction: Real) -> NDArray[np.int32]:
+        """Return the index of the first face hit, −1 for a miss, shape (N,); rays of shape (3, N)."""
+        return self._body.entry(origin, direction)[1].astype(np.int32)
 
 
 class EmbreeFinder:
     """Embree's bounding volume hierarchy over the body's triangles."""
 
-    def __init__(self, body: ConvexPolyhedron) -> None:
+    def __init__(self, body: Body) -> None:
         from embreex import mesh_construction, rtcore_scene
 
         triangles, self._owners = body.triangles
@@ -57,7 +87,7 @@ class EmbreeFinder:
 class NumpyFinder:
     """Every ray against every triangle: T. Möller, B. Trumbore, J. Graphics Tools 2(1), 1997."""
 
-    def __init__(self, body: ConvexPolyhedron) -> None:
+    def __init__(self, body: Body) -> None:
         triangles, self._owners = body.triangles
         self._corners = body.vertices[triangles]
 
