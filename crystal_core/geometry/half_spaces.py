@@ -92,5 +92,7 @@ def _ring(corners: Real, members: NDArray[np.intp], normal: Real) -> tuple[int, 
     """Return the members counter-clockwise about `normal`."""
     spokes = corners[members] - corners[members].mean(axis=0)
     x = spokes[0] / np.linalg.norm(spokes[0])
-    angles = np.arctan2(spokes @ np.cross(normal, x), spokes @ x)
+    # normal × x, written out: np.cross would be half of the time that a body takes.
+    y = np.array([normal[i] * x[j] - normal[j] * x[i] for i, j in ((1, 2), (2, 0), (0, 1))])
+    angles = np.arctan2(spokes @ y, spokes @ x)
     return tuple(members[np.argsort(angles)].tolist())

@@ -105,12 +105,12 @@ def _angles(faces: list[dict[str, Any]], edges: list[dict[str, Any]]) -> list[st
     """Return a line for each kind of edge: the forms that meet there, and the angle between their normals."""
     labels = [one_line(face["label"]) for face in faces]
     width = 2 * max(map(len, labels)) + 4
-    found: dict[tuple[int, int, str], str] = {}
+    found: dict[tuple[int, int, float], str] = {}
     for edge in edges:
         one, other = sorted(edge["faces"])
-        angle = f"{edge['angle_deg']:.2f}"
         told = f"{labels[one]} ∧ {labels[other]}"
-        found.setdefault((faces[one]["form"], faces[other]["form"], angle), f"{told:<{width}}{angle:>7}°")
+        kind = (faces[one]["form"], faces[other]["form"], round(edge["angle_deg"], 2))
+        found.setdefault(kind, f"{told:<{width}}{edge['angle_deg']:>7.2f}°")
     return [found[kind] for kind in sorted(found)]
 
 
