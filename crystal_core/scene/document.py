@@ -100,7 +100,11 @@ class SceneDocument(Part):
 
 def scene_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of the language."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | SceneDocument.model_json_schema()
+    schema = SceneDocument.model_json_schema()
+    for described in schema["properties"].values():
+        if "patternProperties" in described:  # names that do not match are refused
+            described["additionalProperties"] = False
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | schema
 
 
 def _tidied(value: Any) -> Any:

@@ -111,9 +111,11 @@ class Part(BaseModel):
     @classmethod
     def _told_at_once(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         faults: list[tuple[Location, str, Any]] = []
+        misfits: list[tuple[Location, str]] = []
         if isinstance(value, Mapping):
             faults += [((key,), cls._unknown(key), None) for key in value if key not in cls.model_fields]
-            faults += [(place, reason, None) for place, reason in cls.before(value)]
+            misfits = list(cls.before(value))
+            faults += [(place, reason, None) for place, reason in misfits]
         try:
             part = handler(value)
         except ValidationError as error:
@@ -123,7 +125,8 @@ class Part(BaseModel):
                     place = detail["loc"][:-1] if too_few else detail["loc"]
                     faults.append((place, _plainly(detail), detail["input"]))
         else:
-            faults += [(place, reason, None) for place, reason in part.after()]
+            if not misfits:
+                faults += [(place, reason, None) for place, reason in part.after()]
         if faults:
             raise ValidationError.from_exception_data(
                 cls.__name__,

@@ -38,11 +38,14 @@ class MadeBody:
         Of each, turned into the world.
     contact : tuple of int or None
         The number of the common face in each individual of a twin.
+    notes : tuple of str
+        What was mended of a mesh.
     """
 
     solids: tuple[AnySolid, ...]
     media: tuple[StagedMedium, ...]
     contact: tuple[int, int] | None
+    notes: tuple[str, ...] = ()
 
     def highest(self, direction: Real) -> float:
         """Return how far it reaches in a direction from its centre, mm."""
@@ -113,8 +116,8 @@ def made_body(body: Body, files: SceneFiles, dispersion: bool, pointer: str) -> 
     crystal = turn @ stands
     origin = np.zeros(3)
     if not body.shape.grows:
-        solid = cut_solid(body.shape, files, f"{pointer}/shape").transformed(turn, origin)
-        return MadeBody((solid,), (replace(unturned, rotation=crystal),), None)
+        solid, notes = cut_solid(body.shape, files, f"{pointer}/shape")
+        return MadeBody((solid.transformed(turn, origin),), (replace(unturned, rotation=crystal),), None, notes)
     entry = body.entry
     assert entry is not None
     if body.twin is not None:

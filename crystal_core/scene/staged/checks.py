@@ -66,7 +66,7 @@ def _between_bodies(bodies: Sequence[StagedBody]) -> Iterator[Fault]:
         joined = bool(np.any(one.neighbour == j))
         place = other.pointer
         if deep > TOUCHING_MM:
-            yield Fault(place, f"{other.name} and {one.name} overlap by {2 * deep:.3g} mm")
+            yield Fault(place, f"{other.name} and {one.name} overlap{_by(2 * deep)}")
         elif deep >= -TOUCHING_MM and not joined:
             yield Fault(place, f"{other.name} touches {one.name}: leave a gap, or say joined_to (or inside)")
 
@@ -87,12 +87,15 @@ def _inclusions(bodies: Sequence[StagedBody]) -> Iterator[Fault]:
         host = bodies[body.host]
         depth = depth_in(host.solid.body, body.solid.body)
         if depth < TOUCHING_MM:
-            how = (
-                f"sticks out of {host.name} by {-depth:.3g} mm"
-                if depth < -TOUCHING_MM
-                else f"touches the face of {host.name}"
-            )
+            how = f"sticks out of {host.name}{_by(-depth)}"
+            if depth > -TOUCHING_MM:
+                how = f"touches the face of {host.name}"
             yield Fault(f"{body.pointer}/inside", f"{body.name} {how}: it must lie wholly inside")
+
+
+def _by(length_mm: float) -> str:
+    """Return " by 2 mm", or nothing for a mesh, of which the length is not known."""
+    return f" by {length_mm:.3g} mm" if np.isfinite(length_mm) else ""
 
 
 def _through_planes(bodies: Sequence[StagedBody], things: Sequence[StagedSurface | StagedSheet]) -> Iterator[Fault]:

@@ -2,7 +2,7 @@
 
 Two convex bodies overlap where one point is inside both. The point that is deepest inside both is a linear programme
 over their faces; a curved body takes part with planes that touch it, more of them where the last answer was found
-(J. E. Kelley, J. SIAM 8, 703 (1960)).
+(J. E. Kelley, J. SIAM 8, 703 (1960)). Of a mesh it is only told whether it meets another body: infinity stands for yes.
 """
 
 from __future__ import annotations
@@ -14,15 +14,17 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from crystal_core.geometry.cabochon import Cabochon
+from crystal_core.geometry.mesh import Mesh
 from crystal_core.geometry.polyhedron import ConvexPolyhedron
 from crystal_core.geometry.sphere import Sphere
 from crystal_core.scene.staged.flat import Plane
+from crystal_core.scene.staged.meshes import cuts_plane, holds, meets
 from crystal_core.scene.staged.rounded import rounded
 
 __all__ = ["Outlines", "contains", "corners", "depth_in", "highest", "overlap", "support"]
 
 Real = NDArray[np.float64]
-Body = ConvexPolyhedron | Sphere | Cabochon
+Body = ConvexPolyhedron | Sphere | Cabochon | Mesh
 
 ROUNDS = 100
 """Of touching planes at most; a sphere on a sphere takes about ten."""
@@ -49,7 +51,7 @@ class Outlines:
 
 def corners(body: Body) -> Real:
     """Return points that span a body, shape (n, 3): its corners, or those of the box about a curved one."""
-    if isinstance(body, ConvexPolyhedron):
+    if isinstance(body, ConvexPolyhedron | Mesh):
         return body.vertices
     low, high = ([sign * highest(body, sign * axis) for axis in np.eye(3)] for sign in (-1.0, 1.0))
     return np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
@@ -57,7 +59,7 @@ def corners(body: Body) -> Real:
 
 def support(body: Body, direction: Real) -> Real:
     """Return the point of a body that lies furthest in a direction, shape (3,)."""
-    if isinstance(body, ConvexPolyhedron):
+    if isinstance(body, ConvexPolyhedron | Mesh):
         return np.asarray(body.vertices[np.argmax(body.vertices @ direction)], np.float64)
     return rounded(body).support(direction)
 
@@ -71,6 +73,8 @@ def contains(body: Body, point: Real) -> bool:
     """Tell whether a point lies inside or on a body."""
     if isinstance(body, ConvexPolyhedron):
         return bool(np.all(body.normals @ point <= body.offsets))
+    if isinstance(body, Mesh):
+        return bool(holds(body, point[None])[0])
     normals, offsets = rounded(body).tangents(point)
     return bool(np.all(normals @ point <= offsets))
 
@@ -79,6 +83,8 @@ def depth_in(host: Body, inner: Body) -> float:
     """Return the least distance from a body to the faces of its host, negative where it sticks out, mm."""
     if isinstance(host, ConvexPolyhedron):
         return min(float(o) - highest(inner, n) for n, o in zip(host.normals, host.offsets, strict=True))
+    if isinstance(host, Mesh):
+        return np.inf if holds(host, inner.vertices[:1])[0] and not meets(host, inner) else -np.inf
     return rounded(host).room(inner.vertices, lambda direction: support(inner, direction))
 
 
@@ -87,6 +93,10 @@ def overlap(one: Body, other: Body | Plane) -> float:
 
     Negative where they do not meet: then −2 × it is about their distance.
     """
+    if isinstance(one, Mesh):
+        return _overlap_of_mesh(one, other)
+    if isinstance(other, Mesh):
+        return _overlap_of_mesh(other, one)
     planes = [_planes(one)]
     on_plane = None
     if isinstance(other, Plane):
@@ -111,7 +121,14 @@ def overlap(one: Body, other: Body | Plane) -> float:
     return radius
 
 
-def _planes(body: Body) -> tuple[Real, Real]:
+def _overlap_of_mesh(mesh: Mesh, other: Body | Plane) -> float:
+    if isinstance(other, Plane):
+        return np.inf if cuts_plane(mesh, other) else -np.inf
+    inside = contains(mesh, other.vertices[0]) or contains(other, mesh.vertices[0])
+    return np.inf if inside or meets(mesh, other) else -np.inf
+
+
+def _planes(body: ConvexPolyhedron | Sphere | Cabochon) -> tuple[Real, Real]:
     """Return half-spaces that hold a body: its faces, or some planes that touch a curved one."""
     if isinstance(body, ConvexPolyhedron):
         return body.normals, body.offsets

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import PurePath
 from typing import Any
 
 from crystal_core.geometry.boxes import box, plate, wedge
 from crystal_core.geometry.brilliant import PROPORTIONS, brilliant
 from crystal_core.geometry.cabochon import Cabochon, cabochon
+from crystal_core.geometry.mesh import Mesh
+from crystal_core.geometry.mesh_file import load_mesh
 from crystal_core.geometry.polyhedron import ConvexPolyhedron
 from crystal_core.geometry.prisms import column, prism
 from crystal_core.geometry.solid import Solid
@@ -17,15 +20,15 @@ from crystal_core.geometry.step_cut import StepProportions, step_cut
 from crystal_core.scene.scene_files import SceneFiles
 from crystal_core.scene.shapes import Brilliant, Shape, StepCut
 
-__all__ = ["AnySolid", "cut_solid"]
+__all__ = ["AnySolid", "cut_solid", "mesh_suffix"]
 
-AnySolid = Solid[ConvexPolyhedron] | Solid[Sphere] | Solid[Cabochon]
+AnySolid = Solid[ConvexPolyhedron] | Solid[Sphere] | Solid[Cabochon] | Solid[Mesh]
 
 MM_PER_UM = 1e-3
 
 
-def cut_solid(shape: Shape, files: SceneFiles, pointer: str) -> AnySolid:
-    """Return the solid of a cut or a mesh, centred on the origin.
+def cut_solid(shape: Shape, files: SceneFiles, pointer: str) -> tuple[AnySolid, tuple[str, ...]]:
+    """Return the solid of a cut or a mesh, centred on the origin, and what was mended of a mesh.
 
     Parameters
     ----------
@@ -42,53 +45,72 @@ def cut_solid(shape: Shape, files: SceneFiles, pointer: str) -> AnySolid:
         Proportions with which the facets do not meet; a mesh that is not closed.
     """
     at = f"{pointer}/{shape.kind}"
-    return _CUTTERS[shape.kind](shape, files, at)
+    if shape.mesh is not None:
+        data = files.read(shape.mesh.file, f"{at}/file")
+        loaded = load_mesh(data, mesh_suffix(shape.mesh.file, data), shape.mesh.size_mm, pointer=at)
+        return loaded.solid, loaded.notes
+    return _CUTTERS[shape.kind](shape, at), ()
 
 
-def _box(shape: Shape, _: SceneFiles, pointer: str) -> Solid:
+def mesh_suffix(name: str, data: bytes) -> str:
+    """Return the suffix that tells a mesh's format: of its name, or of what an asset's bytes begin with."""
+    if not name.startswith("asset:"):
+        return PurePath(name).suffix.lower()
+    start = data[:512].lstrip()
+    if data.startswith(b"glTF"):
+        return ".glb"
+    if start.startswith(b"{"):
+        return ".gltf"
+    if start.startswith(b"ply"):
+        return ".ply"
+    binary_stl = len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
+    return ".stl" if binary_stl or start[:5].lower() == b"solid" else ".obj"
+
+
+def _box(shape: Shape, pointer: str) -> Solid:
     assert shape.box is not None
     return box(shape.box.size_mm, pointer=pointer)
 
 
-def _plate(shape: Shape, _: SceneFiles, pointer: str) -> Solid:
+def _plate(shape: Shape, pointer: str) -> Solid:
     assert shape.plate is not None
     return plate(shape.plate.size_mm, MM_PER_UM * shape.plate.thickness_um, pointer=pointer)
 
 
-def _wedge(shape: Shape, _: SceneFiles, pointer: str) -> Solid:
+def _wedge(shape: Shape, pointer: str) -> Solid:
     assert shape.wedge is not None
     thin, thick = shape.wedge.thickness_um
     return wedge(shape.wedge.size_mm, (MM_PER_UM * thin, MM_PER_UM * thick), pointer=pointer)
 
 
-def _prism(shape: Shape, _: SceneFiles, pointer: str) -> Solid:
+def _prism(shape: Shape, pointer: str) -> Solid:
     assert shape.prism is not None
     return prism(shape.prism.apex_deg, shape.prism.side_mm, shape.prism.length_mm, pointer=pointer)
 
 
-def _column(shape: Shape, _: SceneFiles, pointer: str) -> Solid:
+def _column(shape: Shape, pointer: str) -> Solid:
     assert shape.column is not None
     return column(shape.column.sides, shape.column.diameter_mm, shape.column.length_mm, pointer=pointer)
 
 
-def _sphere(shape: Shape, _: SceneFiles, pointer: str) -> Solid[Sphere]:
+def _sphere(shape: Shape, pointer: str) -> Solid[Sphere]:
     assert shape.sphere is not None
     return sphere(shape.sphere.diameter_mm, pointer=pointer)
 
 
-def _cabochon(shape: Shape, _: SceneFiles, pointer: str) -> Solid[Cabochon]:
+def _cabochon(shape: Shape, pointer: str) -> Solid[Cabochon]:
     assert shape.cabochon is not None
     written = shape.cabochon
     return cabochon(written.size_mm, written.height_mm, profile=written.profile, pointer=pointer)
 
 
-def _brilliant(shape: Shape, _: SceneFiles, pointer: str) -> Solid:
+def _brilliant(shape: Shape, pointer: str) -> Solid:
     assert shape.brilliant is not None
     proportions = replace(PROPORTIONS[shape.brilliant.proportions], **_given(shape.brilliant))
     return brilliant(shape.brilliant.diameter_mm, proportions, pointer=pointer)
 
 
-def _step_cut(shape: Shape, _: SceneFiles, pointer: str) -> Solid:
+def _step_cut(shape: Shape, pointer: str) -> Solid:
     assert shape.step_cut is not None
     proportions = replace(StepProportions(), **_given(shape.step_cut))
     return step_cut(shape.step_cut.size_mm, proportions, pointer=pointer)
@@ -104,7 +126,7 @@ def _given(cut: Brilliant | StepCut) -> dict[str, Any]:
     }
 
 
-_CUTTERS: dict[str, Callable[[Shape, SceneFiles, str], AnySolid]] = {
+_CUTTERS: dict[str, Callable[[Shape, str], AnySolid]] = {
     "box": _box,
     "plate": _plate,
     "wedge": _wedge,

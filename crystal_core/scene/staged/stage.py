@@ -45,6 +45,8 @@ class StagedDocument:
         In the order of the scene.
     camera : StagedView
         The camera.
+    notes : tuple of Fault
+        What was mended: of meshes.
     frame : int
         Number of the frame.
     still : StagedDocument or None
@@ -58,6 +60,7 @@ class StagedDocument:
     sheets: tuple[StagedSheet, ...]
     lights: tuple[StagedLight, ...]
     camera: StagedView
+    notes: tuple[Fault, ...] = ()
     frame: int = 0
     still: StagedDocument | None = None
 
@@ -119,7 +122,8 @@ def stage_scene(document: SceneDocument, files: SceneFiles | None = None) -> Sta
     if document.motion is None:
         check_scene(still.bodies, still.surfaces, still.sheets, still.lights, still.camera, "")
         return still
-    first, *_ = [still.at(frame) for frame in range(document.frames)]
+    moves = any(move.kind in {"shift", "turn", "stage"} for move in document.motion.moves)
+    first, *_ = [still.at(frame) for frame in range(document.frames if moves else 1)]
     return first
 
 
@@ -157,4 +161,5 @@ def _still(document: SceneDocument, files: SceneFiles) -> StagedDocument:
     points = [corners(body.solid.body) for body in placed] or [plane.corners for plane in planes]
     lights = tuple(staged_light(name, light) for name, light in document.lights.items())
     camera = staged_view(document.camera, points, document.render.size_px)
-    return StagedDocument(document, media, placed, tuple(surfaces), tuple(sheets), lights, camera)
+    notes = tuple(Fault(f"/bodies/{name}/shape/mesh", note) for name, body in made.items() for note in body.notes)
+    return StagedDocument(document, media, placed, tuple(surfaces), tuple(sheets), lights, camera, notes)
