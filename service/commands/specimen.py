@@ -58,9 +58,7 @@ def specimen(
         solid = specimen_solid(entry, habit, size_mm)
         known = habit_of(entry, habit)
     except InputError as error:
-        raise InputError(
-            Fault(_OPTIONS.get(fault.pointer, fault.pointer), fault.message) for fault in error.faults
-        ) from None
+        raise InputError(Fault(_option(fault.pointer), fault.message) for fault in error.faults) from None
     if mesh is not None:
         _write(mesh, ply(solid, f"{entry.id}, {known.name}, {size_mm:g} mm"))
     document = habit_document(entry, known, size_mm, solid)
@@ -77,6 +75,11 @@ def _entry(mineral_id: str) -> Mineral:
         return minerals_db.mineral(mineral_id)
     except minerals_db.UnknownMineralError as error:
         raise InputError.at("MINERAL", f"{error} (see isogyre minerals list)") from None
+
+
+def _option(pointer: str) -> str:
+    """Return the option that is wrong; where the forms of a habit are, in an entry of the user's own, its name."""
+    return "--habit" if pointer.startswith("/forms") else _OPTIONS[pointer]
 
 
 def _page(document: dict[str, Any]) -> list[str]:

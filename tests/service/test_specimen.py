@@ -112,6 +112,14 @@ def test_refusals(capsys: pytest.CaptureFixture[str], arguments: list[str], comp
     assert refused(capsys, *arguments).startswith(complaint)
 
 
+def test_a_habit_that_does_not_close(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """As it may stand in an entry of one's own."""
+    quartz = minerals_db.mineral("quartz")
+    prism = quartz.habits[0].model_copy(update={"forms": quartz.habits[0].forms[:1]})
+    monkeypatch.setattr(minerals_db, "mineral", lambda _: quartz.model_copy(update={"habits": (prism,)}))
+    assert refused(capsys, "quartz").startswith("--habit: {1 0 0} in class 321 do not close")
+
+
 def test_habits_over_http(client: TestClient) -> None:
     answer = client.get("/v1/minerals/calcite/habits").json()
     entry = minerals_db.mineral("calcite")
