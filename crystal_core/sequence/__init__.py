@@ -2,15 +2,20 @@
 
 from crystal_core.sequence.catalogue import demonstrations
 from crystal_core.sequence.demonstration import Demonstration
+from crystal_core.sequence.demonstration_request import DemonstrationRequest
 from crystal_core.sequence.frames import Frame, Tile, TileResult, assemble, frame_angle_deg, render_tile, tile_grid
 from crystal_core.sequence.manifest import FrameRecord, manifest
-from crystal_core.sequence.request import RenderRequest, parse_request
+from crystal_core.sequence.parsing import parse_request, read_request
+from crystal_core.sequence.request import RenderRequest
+from crystal_core.sequence.scene_request import SceneRequest
 
 __all__ = [
     "Demonstration",
+    "DemonstrationRequest",
     "Frame",
     "FrameRecord",
     "RenderRequest",
+    "SceneRequest",
     "Tile",
     "TileResult",
     "assemble",
@@ -18,6 +23,7 @@ __all__ = [
     "frame_angle_deg",
     "manifest",
     "parse_request",
+    "read_request",
     "render_tile",
     "tile_grid",
 ]

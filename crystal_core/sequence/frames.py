@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crystal_core.render import QUALITIES, Illumination, Quality, keep_freed_memory, render_pixels, tuned_quality
-from crystal_core.scene import Scene, StagedScene, stage
+from crystal_core.scene import StagedScene
 from crystal_core.sequence.request import RenderRequest
 
 __all__ = ["Frame", "Tile", "TileResult", "assemble", "frame_angle_deg", "render_tile", "tile_grid"]
@@ -70,7 +70,7 @@ class Frame:
 
 def frame_angle_deg(request: RenderRequest, index: int) -> float:
     """Return the stage angle of a frame, in degrees, counter-clockwise seen from above."""
-    return request.parameters.angle_deg(index, request.frames)
+    return request.angle_deg(index)
 
 
 def tile_grid(request: RenderRequest) -> tuple[Tile, ...]:
@@ -134,16 +134,10 @@ def assemble(request: RenderRequest, results: Iterable[TileResult]) -> Frame:
     return Frame(linear, float(np.sqrt(squared / (width * height))), seconds)
 
 
-@lru_cache(maxsize=2)
-def _staged(scene: Scene, assets: Path | None) -> StagedScene:
-    """Stage what all frames share, once per process."""
-    return stage(scene, assets)
-
-
 @lru_cache(maxsize=3)
 def _staged_frame(request: RenderRequest, frame: int, assets: Path | None) -> tuple[StagedScene, Illumination, Quality]:
     """Stage one frame, once per process: its tiles share it."""
-    turned = _staged(request.parameters.scene(), assets).turned(frame_angle_deg(request, frame))
-    illumination = Illumination(turned)
+    scene = request.staged(frame, assets)
+    illumination = Illumination(scene)
     quality = QUALITIES[request.quality]
-    return turned, illumination, tuned_quality(turned, illumination, quality, request.size, (request.seed, frame))
+    return scene, illumination, tuned_quality(scene, illumination, quality, request.size, (request.seed, frame))

@@ -11,7 +11,6 @@ import numpy as np
 
 import crystal_core
 import minerals_db
-from crystal_core.scene import stage
 from crystal_core.sequence.request import RenderRequest, code_digest
 
 __all__ = ["FrameRecord", "manifest"]
@@ -58,14 +57,9 @@ def manifest(request: RenderRequest, frames: Sequence[FrameRecord], complete: bo
     complete : bool
         Whether all frames and the animation are there.
     """
-    scene = request.parameters.scene()
-    parameters = request.canonical()["parameters"]
-    # The texture's pixels play no part in the facts; an asset may be gone by the time a manifest is asked for.
-    facts = request.parameters.facts(stage(scene.model_copy(update={"page": scene.page.model_copy(update=PLAIN)})))
     ordered = sorted(frames, key=lambda record: record.index)
     return {
-        "demonstration": request.demonstration,
-        "parameters": parameters,
+        **request.described(),
         "seed": request.seed,
         "versions": {
             "isogyre": crystal_core.__version__,
@@ -81,17 +75,6 @@ def manifest(request: RenderRequest, frames: Sequence[FrameRecord], complete: bo
         "error_estimate": max((record.error_estimate for record in ordered), default=None),
         "reproducible": True,
         "gamut": "linear sRGB clipped to 0–1 per channel",
-        "exposure": scene.exposure,
-        "camera": {
-            "eye_mm": list(scene.camera.eye_mm),
-            "target_mm": list(scene.camera.target_mm),
-            "up": list(scene.camera.up),
-            "vfov_deg": scene.camera.vfov_deg,
-        },
-        "scene": facts,
         "frames": [asdict(record) for record in ordered],
         "complete": complete,
     }
-
-
-PLAIN = {"texture": "digits", "marks_mm": ()}

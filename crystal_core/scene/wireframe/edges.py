@@ -17,7 +17,7 @@ __all__ = ["Line", "body_lines", "front_faces"]
 Real = NDArray[np.float64]
 
 GRAZING = 1e-7
-"""A face is turned to the eye if the cosine between its normal and the line of sight is above this."""
+"""A face whose normal stands across the line of sight to within this cosine is seen edge-on."""
 
 MANY_FACES = 300
 """A mesh of more faces is a rounded thing in facets: only its sharp edges and its outline are drawn."""
@@ -34,7 +34,7 @@ class Line:
     start, end : Real
         Shape (3,), mm.
     is_front : bool
-        Whether one of the faces at it is turned to the eye.
+        Whether one of the faces at it is turned to the eye, or seen edge-on.
     """
 
     start: Real
@@ -45,7 +45,7 @@ class Line:
 def body_lines(body: Body, lens: Lens) -> list[Line]:
     """Return edges and outlines of a body in a fixed order."""
     if isinstance(body, ConvexPolyhedron):
-        front = front_faces(body, lens)
+        front = _facing(body, lens) > -GRAZING
         return [
             Line(body.vertices[i], body.vertices[j], bool(front[one] or front[other]))
             for (i, j), (one, other) in sorted(body.edges.items())
@@ -55,11 +55,16 @@ def body_lines(body: Body, lens: Lens) -> list[Line]:
 
 def front_faces(body: Body, lens: Lens) -> NDArray[np.bool_]:
     """Tell which faces of a body with flat faces are turned to the eye, shape (F,)."""
+    return np.asarray(_facing(body, lens) > GRAZING)
+
+
+def _facing(body: Body, lens: Lens) -> Real:
+    """Return the cosine between the normal of every flat face and the line of sight to it, shape (F,)."""
     triangles, owners = body.triangles
     _, first = np.unique(owners, return_index=True)
     points = body.vertices[triangles[first, 0]]
     normals = body.normal(owners[first].astype(np.intp), points.T).T
-    return np.asarray(np.einsum("fi,fi->f", normals, lens.towards_eye(points)) > GRAZING)
+    return np.asarray(np.einsum("fi,fi->f", normals, lens.towards_eye(points)))
 
 
 def _mesh_lines(body: Body, lens: Lens) -> Iterator[Line]:
@@ -83,7 +88,7 @@ def _mesh_lines(body: Body, lens: Lens) -> Iterator[Line]:
     for (i, j), meeting in sorted(sides.items()):
         if len({int(owners[number]) for number, _ in meeting}) < 2:
             continue
-        turned = [max(facing[number, place], facing[number, (place + 1) % 3]) > GRAZING for number, place in meeting]
+        turned = [max(facing[number, place], facing[number, (place + 1) % 3]) > -GRAZING for number, place in meeting]
         if many:
             normals = flat[[number for number, _ in meeting]]
             if all(turned) == any(turned) and normals[0] @ normals[-1] > np.cos(np.deg2rad(SHARP_DEG)):
