@@ -96,7 +96,7 @@ def _stl(data: bytes, pointer: str) -> tuple[int, int]:
         (count,) = struct.unpack_from("<I", data, 80)
         if len(data) == 84 + 50 * count:
             return count, 3 * count
-    if not data.lstrip()[:5].lower() == b"solid":
+    if data.lstrip()[:5].lower() != b"solid":
         raise _no_mesh("stl", "neither the length of a binary file nor the word 'solid'", pointer)
     count = max(data.count(b"endfacet"), data.count(b"ENDFACET"))
     return count, max(3 * count, data.count(b"vertex"), data.count(b"VERTEX"))
@@ -114,15 +114,27 @@ def _ply(data: bytes, pointer: str) -> tuple[int, int]:
 
 
 def _obj(data: bytes, pointer: str) -> tuple[int, int]:
-    lines = b"\n" + data.replace(b"\r", b"\n")
-    faces, corners = lines.count(b"\nf "), lines.count(b"\nv ")
+    faces, corners = len(re.findall(rb"\nf[ \t]", b"\n" + data)), len(re.findall(rb"\nv[ \t]", b"\n" + data))
     if faces <= MAX_FACES and corners <= _MAX_CORNERS:
         # Polygons become fans of triangles.
-        polygons = re.findall(rb"\nf[ \t]([^\n]*)", lines)
+        polygons = _obj_lines(data, b"f")
         if any(b"-" in polygon for polygon in polygons):
             raise InputError.at(pointer, "relative (negative) numbers of corners are not read: number them from 1")
         faces = sum(max(len(polygon.split()) - 2, 1) for polygon in polygons)
     return faces, corners
+
+
+def _obj_lines(data: bytes, kind: bytes) -> list[bytes]:
+    """Return what follows `kind` in the lines of it."""
+    joined = re.sub(rb"\\\r?\n", b" ", data)
+    return re.findall(rb"(?m)^[ \t]*" + kind + rb"[ \t]+([^\r\n]*)", joined)
+
+
+def _obj_geometry(data: bytes) -> bytes:
+    """Return the corners and faces of an OBJ file alone: no groups, materials, texture coordinates or normals."""
+    corners = [b"v " + b" ".join(line.split()[:3]) for line in _obj_lines(data, b"v")]
+    faces = [b"f " + b" ".join(corner.split(b"/")[0] for corner in line.split()) for line in _obj_lines(data, b"f")]
+    return b"\n".join((*corners, *faces, b""))
 
 
 def _check_gltf(data: bytes, kind: str, pointer: str) -> None:
@@ -170,14 +182,15 @@ def _check_tree(tree: dict[str, Any], pointer: str) -> None:
     children = [int(child) for node in nodes for child in node.get("children", [])]
     if len(set(children)) < len(children) or _turns_back(nodes):
         raise InputError.at(pointer, "the nodes of the file are no tree")
-    faces = 0
+    faces = corners = 0
     for node in nodes:
         for primitive in tree["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
+            corners += counts[primitive["attributes"]["POSITION"]]
             if primitive.get("mode", 4) == 4:
                 faces += counts[primitive.get("indices", primitive["attributes"]["POSITION"])] // 3
             elif primitive["mode"] in (5, 6):
                 faces += counts[primitive.get("indices", primitive["attributes"]["POSITION"])]
-    _check_counts(faces, 0, pointer)
+    _check_counts(faces, corners, pointer)
 
 
 def _turns_back(nodes: list[dict[str, Any]]) -> bool:
@@ -199,8 +212,9 @@ def _parsed(data: bytes, kind: str, pointer: str) -> tuple[Real, Index, tuple[st
         # A warning means that something was not read as it stands.
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("error")
+            text = _obj_geometry(data) if kind == "obj" else data
             scene = trimesh.load_scene(
-                BytesIO(data), file_type=kind, resolver=None, allow_remote=False, process=False, skip_materials=True
+                BytesIO(text), file_type=kind, resolver=None, allow_remote=False, process=False, skip_materials=True
             )
             parts = scene.dump()
     except Exception as error:  # whatever a parser stumbles over, the file is not readable

@@ -11,7 +11,7 @@ from scipy.spatial.distance import cdist
 
 from crystal_core.errors import InputError
 from crystal_core.geometry.convex_mesh import as_polyhedron
-from crystal_core.geometry.crossing_edges import crossing_places
+from crystal_core.geometry.crossing_edges import crossing_place
 from crystal_core.geometry.habit import check_size
 from crystal_core.geometry.mesh import Mesh
 from crystal_core.geometry.mesh_contents import mesh_triangles
@@ -97,11 +97,13 @@ def _solid(surface: Surface, scale: float, shift: Real, pointer: str) -> Solid[C
     polyhedron = as_polyhedron(surface, faces)
     if polyhedron is not None:
         return Solid(polyhedron, labels, hkl)
-    places = crossing_places(surface)
-    if len(places):
-        first = places[0] * scale + shift
-        told = "({:.4g}, {:.4g}, {:.4g})".format(*(first + 0.0))
-        raise InputError.at(pointer, f"the surface of the mesh passes through itself, first near {told}")
+    try:
+        place = crossing_place(surface)
+    except OverflowError as error:
+        raise InputError.at(pointer, "too many triangles of the mesh lie over each other") from error
+    if place is not None:
+        told = "({:.4g}, {:.4g}, {:.4g})".format(*(place * scale + shift + 0.0))
+        raise InputError.at(pointer, f"the surface of the mesh passes through itself, for instance near {told}")
     corners, owners = surface.triangles.astype(np.int32), faces.owners.astype(np.int32)
     return Solid(Mesh(surface.vertices, corners, owners, faces.normals, faces.offsets), labels, hkl)
 

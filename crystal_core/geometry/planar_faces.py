@@ -73,27 +73,42 @@ def planar_faces(surface: Surface) -> PlanarFaces:
     links = coo_array((np.ones(int(joined.sum())), (one[joined], other[joined])), shape=(count, count))
     groups, group = connected_components(links, directed=False)
     order = np.argsort(group, kind="stable")
-    faces: list[Index] = []
+    faces: list[_Face] = []
     neighbours: list[list[int]] | None = None
     for some in np.split(order, np.searchsorted(group[order], np.arange(1, groups))):
         if sliver[some[0]]:
             continue
-        if len(some) == 1 or _level(vertices, triangles, crossed, some, flat):
-            faces.append(some)
+        face = _face(vertices, triangles, crossed, some, 0.1 * flat)
+        if face.misses <= flat:
+            faces.append(face)
             continue
         # A chain of triangles that bends by and by: faces grow from the largest triangle on, each about one plane.
         if neighbours is None:
             neighbours = _lists(one[joined], other[joined], count)
-        faces += _grown(vertices, triangles, normals, doubled, some, neighbours, flat)
-    areas = np.array([doubled[face].sum() for face in faces])
+        pieces = _grown(vertices, triangles, normals, doubled, some, neighbours, flat)
+        faces += [_face(vertices, triangles, crossed, piece, 0.1 * flat) for piece in pieces]
+    areas = np.array([doubled[face.members].sum() for face in faces])
     # Equal faces keep the order of the file, whatever rounding says of their areas.
-    falling = np.lexsort((np.array([face.min() for face in faces]), -np.round(areas / areas.max(), 9)))
+    falling = np.lexsort((np.array([face.members.min() for face in faces]), -np.round(areas / areas.max(), 9)))
+    faces = [faces[number] for number in falling.tolist()]
     owners = np.full(count, -1, np.intp)
-    for number, face in enumerate(falling.tolist()):
-        owners[faces[face]] = number
-    planes = [_plane(vertices, triangles, crossed, faces[face]) for face in falling]
-    _give_slivers(vertices, triangles, owners, _lists(one, other, count))
-    return PlanarFaces(owners, np.array([p[0] for p in planes]), np.array([p[1] for p in planes]), folded)
+    for number, face in enumerate(faces):
+        owners[face.members] = number
+    if sliver.any():
+        _give_slivers(vertices, triangles, owners, _lists(one, other, count))
+    return PlanarFaces(
+        owners, np.array([face.normal for face in faces]), np.array([face.offset for face in faces]), folded
+    )
+
+
+@dataclass(frozen=True)
+class _Face:
+    """Triangles, their plane, and the greatest distance of a corner from it."""
+
+    members: Index
+    normal: Real
+    offset: float
+    misses: float
 
 
 def _lists(one: Index, other: Index, count: int) -> list[list[int]]:
@@ -107,24 +122,25 @@ def _lists(one: Index, other: Index, count: int) -> list[list[int]]:
 
 def _give_slivers(vertices: Real, triangles: Index, owners: Index, neighbours: list[list[int]]) -> None:
     """Give triangles without a plane of their own to the face across their longest edge, in whose plane they lie."""
-    waiting = np.flatnonzero(owners < 0).tolist()
-    while waiting:
-        left = []
-        for sliver in waiting:
-            # A neighbour's share of this triangle's corners tells the edge between them.
-            sides = [(_shared_length(vertices, triangles, sliver, near), near) for near in neighbours[sliver]]
-            across = max(sides)[1]
-            if owners[across] >= 0:
-                owners[sliver] = owners[across]
-            else:
-                left.append(sliver)
-        if len(left) == len(waiting):  # they wait for each other: any neighbour that knows will do
-            for sliver in left:
-                known = [near for near in neighbours[sliver] if owners[near] >= 0]
-                if known:
-                    owners[sliver] = owners[known[0]]
-            left = [sliver for sliver in left if owners[sliver] < 0]
-        waiting = left
+    slivers = np.flatnonzero(owners < 0).tolist()
+    hanging: dict[int, list[int]] = {}
+    for sliver in slivers:
+        across = max((_shared_length(vertices, triangles, sliver, near), near) for near in neighbours[sliver])[1]
+        hanging.setdefault(across, []).append(sliver)
+    known = deque(across for across in hanging if owners[across] >= 0)
+    while known:
+        across = known.popleft()
+        for sliver in hanging.get(across, ()):
+            owners[sliver] = owners[across]
+            known.append(sliver)
+    # Slivers that lie across from each other: any neighbour that has a face will do.
+    known = deque(near for sliver in slivers if owners[sliver] < 0 for near in neighbours[sliver] if owners[near] >= 0)
+    while known:
+        near = known.popleft()
+        for sliver in neighbours[near]:
+            if owners[sliver] < 0:
+                owners[sliver] = owners[near]
+                known.append(sliver)
 
 
 def _shared_length(vertices: Real, triangles: Index, one: int, other: int) -> float:
@@ -132,26 +148,21 @@ def _shared_length(vertices: Real, triangles: Index, one: int, other: int) -> fl
     return float(np.linalg.norm(np.ptp(vertices[ends], axis=0)))
 
 
-def _level(vertices: Real, triangles: Index, crossed: Real, some: Index, flat: float) -> bool:
-    """Tell whether the corners of triangles lie in one plane."""
-    normal, offset = _plane(vertices, triangles, crossed, some)
-    return bool(np.abs(vertices[triangles[some]] @ normal - offset).max() <= flat)
-
-
-def _plane(vertices: Real, triangles: Index, crossed: Real, some: Index) -> tuple[Real, float]:
-    """Return the plane of triangles, its normal outward: that of their area, or of least squares if it is nearer."""
-    outward = crossed[some].sum(axis=0)
-    normal = outward / np.linalg.norm(outward)
-    points = vertices[np.unique(triangles[some])]
+def _face(vertices: Real, triangles: Index, crossed: Real, some: Index, good: float) -> _Face:
+    """Return triangles as a face: in the plane of their area if that is good enough, else in that of least squares."""
+    points = vertices[triangles[some].reshape(-1)]
     middle = points.mean(axis=0)
+    outward = crossed[some].sum(axis=0)
+    # What is exact but for rounding stays as it is: the normals of a cube keep their noughts.
+    normal = outward / np.sqrt(outward @ outward)
     spokes = points - middle
     misses = float(np.abs(spokes @ normal).max())
-    # What is exact but for rounding stays as it is: the normals of a cube keep their noughts.
-    if len(points) > 3 and misses > 1e-14 * float(np.abs(spokes).max()):
+    if misses > good:
         fitted = np.linalg.svd(spokes, full_matrices=False)[2][2]
-        if np.abs(spokes @ fitted).max() < misses:
-            normal = fitted * np.sign(fitted @ normal)
-    return normal, float(middle @ normal)
+        better = float(np.abs(spokes @ fitted).max())
+        if better < misses:
+            normal, misses = fitted * np.sign(fitted @ normal), better
+    return _Face(some, normal, float(middle @ normal), misses)
 
 
 def _grown(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,10 @@ _LEAF = 4
 """Triangles in a leaf."""
 
 _CHUNK = 4096
-"""Rays that walk the tree together: their pairs with boxes stay within a few MB."""
+"""Rays that walk the tree together."""
+
+_PAIRS = 400_000
+"""Pairs of ray and box at a time, where more than one ray is left to take apart: about 100 MB."""
 
 _BITS = 10
 """Of each coordinate in the order of the leaves."""
@@ -123,12 +127,7 @@ class TriangleTree:
         until : float
             Boxes farther than this, in lengths of the direction, are passed over.
         """
-        parts = [
-            self._crossings(
-                origin[:, start : start + _CHUNK], direction[:, start : start + _CHUNK], least, until, start
-            )
-            for start in range(0, max(origin.shape[1], 1), _CHUNK)
-        ]
+        parts = list(self.in_parts(origin, direction, least=least, until=until))
         return Crossings(
             np.concatenate([part.ray for part in parts]),
             np.concatenate([part.triangle for part in parts]),
@@ -136,8 +135,32 @@ class TriangleTree:
             np.concatenate([part.leaves for part in parts]),
         )
 
-    def _crossings(self, origin: Real, direction: Real, least: float, until: float, first: int) -> Crossings:
-        from_, ahead = origin.T, direction.T
+    def in_parts(
+        self, origin: Real, direction: Real, *, least: float = -np.inf, until: float = np.inf, most: float = np.inf
+    ) -> Iterator[Crossings]:
+        """Yield what `crossings` returns, for some rays after the others.
+
+        Raises
+        ------
+        OverflowError
+            More than `most` pairs of a ray and a triangle would have to be looked at.
+        """
+        waiting = [(start, min(start + _CHUNK, origin.shape[1])) for start in range(0, max(origin.shape[1], 1), _CHUNK)]
+        waiting.reverse()
+        while waiting:
+            start, stop = waiting.pop()
+            pairs = self._candidates(origin.T[start:stop], direction.T[start:stop], least, until)
+            if pairs is None:
+                middle = (start + stop) // 2
+                waiting += [(middle, stop), (start, middle)]
+                continue
+            most -= len(pairs[0])
+            if most < 0:
+                raise OverflowError("more pairs of rays and triangles than are allowed")
+            yield self._tested(origin.T[start:stop], direction.T[start:stop], *pairs, start)
+
+    def _candidates(self, from_: Real, ahead: Real, least: float, until: float) -> tuple[Index, Index] | None:
+        """Return rays, rows of shape (N, 3), and triangles in boxes that they meet; None if too many for once."""
         scale = np.abs(ahead).max(axis=1, initial=0.0)
         # A ray along a side of a box: any tiny speed sends the crossing far away, without 0/0.
         speed = np.where(ahead == 0.0, 1e-200 * np.where(scale > 0.0, scale, 1.0)[:, None], ahead)
@@ -147,14 +170,16 @@ class TriangleTree:
         for depth, (low, high) in enumerate(self._levels):
             if depth:
                 ray, node = np.repeat(ray, 2), np.stack((2 * node, 2 * node + 1), axis=-1).reshape(-1)
+            if len(ray) > _PAIRS and len(from_) > 1:
+                return None
             one, other = (low[node] - from_[ray]) * inverse[ray], (high[node] - from_[ray]) * inverse[ray]
             near, far = np.minimum(one, other).max(axis=1), np.maximum(one, other).min(axis=1)
             met = (near <= far) & (far >= near_limit[ray]) & (near <= until)
             ray, node = ray[met], node[met]
-        triangle = self._order[node].reshape(-1)
-        ray = np.repeat(ray, _LEAF)
-        pairs = np.unique(np.stack((ray, triangle)), axis=1) if len(ray) else np.stack((ray, triangle))
-        return self._tested(from_, ahead, pairs[0], pairs[1], first)
+        ray, triangle = np.repeat(ray, _LEAF), self._order[node].reshape(-1)
+        # The last triangle fills up the last leaves: once is enough.
+        pairs = np.unique(ray * len(self._corners) + triangle)
+        return pairs // len(self._corners), pairs % len(self._corners)
 
     def _tested(self, origin: Real, direction: Real, ray: Index, triangle: Index, first: int) -> Crossings:
         # Axes of each ray: z the one it goes along most; x and y such that triangles keep their sense.
