@@ -25,6 +25,8 @@ FIGURES = [
     ("calcite", "e", D, 1.48640, 3e-4, "F. F. Martens, Ann. Phys. 6, 603 (1901); from memory"),
     ("calcite", "o", D, 1.658, 5e-4, "Handbook of Mineralogy (2001-2005)"),
     ("calcite", "e", D, 1.486, 5e-4, "Handbook of Mineralogy (2001-2005)"),
+    ("adp", "o", D, 1.5246, 8e-4, "classical value of crystals of ammonium dihydrogen phosphate; from memory"),
+    ("adp", "e", D, 1.4792, 8e-4, "classical value of crystals of ammonium dihydrogen phosphate; from memory"),
     # Our coefficients: Ghosh 1999.
     ("quartz", "o", D, 1.54424, 5e-5, "classical textbook value; from memory"),
     ("quartz", "e", D, 1.55335, 6e-5, "classical textbook value; from memory"),
