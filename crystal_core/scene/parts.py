@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
@@ -119,8 +119,9 @@ class Part(BaseModel):
         try:
             part = handler(value)
         except ValidationError as error:
-            for detail in error.errors(include_url=False):
-                if detail["type"] != "extra_forbidden":
+            details = error.errors(include_url=False)
+            for detail in details:
+                if detail["type"] != "extra_forbidden" and not _follows_from_others(detail, details):
                     too_few = detail["type"] == "missing" and isinstance(detail["loc"][-1], int)
                     place = detail["loc"][:-1] if too_few else detail["loc"]
                     faults.append((place, _plainly(detail), detail["input"]))
@@ -183,6 +184,14 @@ class Choice(Part):
             alone.append({"properties": dict.fromkeys(cls.choices, null)})
         handler.resolve_ref_schema(described)["oneOf"] = alone
         return described
+
+
+def _follows_from_others(detail: Any, details: Sequence[Any]) -> bool:
+    """Tell whether a list or mapping is too short only because what is in it is wrong: pydantic counts what is right."""
+    place = detail["loc"]
+    return detail["type"] == "too_short" and any(
+        len(other["loc"]) > len(place) and other["loc"][: len(place)] == place for other in details
+    )
 
 
 _PLAIN = {
