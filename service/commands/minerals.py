@@ -172,3 +172,11 @@ def check(
         if not report.faults:
             print_text(report.counts())
     return _FAULTY if report.faults else 0
+
+
+@minerals.command("schema")
+def schema() -> None:
+    """Print the JSON Schema of a whole entry."""
+    import minerals_db
+
+    print_json(minerals_db.entry_schema())

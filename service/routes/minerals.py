@@ -226,6 +226,15 @@ def optics(request: Request, mineral_id: str) -> Response:
     return JSONResponse({**found.document(), "links": links}, headers=headers)
 
 
+@router.get("/schemas/mineral", summary="JSON Schema of a mineral's entry", response_model=dict[str, Any])
+def entry_schema(request: Request) -> Response:
+    """Return what a data file of a mineral holds, as JSON Schema (draft 2020-12)."""
+    etag = _etag("schema", None)
+    if is_known(request, etag):
+        return unchanged(etag, "no-cache")
+    return JSONResponse(minerals_db.entry_schema(), headers={"ETag": etag}, media_type="application/schema+json")
+
+
 def _entry(mineral_id: str) -> Mineral:
     try:
         return minerals_db.mineral(mineral_id)

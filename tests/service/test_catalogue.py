@@ -24,6 +24,7 @@ def test_openapi_describes_the_interface(client: TestClient) -> None:
         "/v1/minerals",
         "/v1/minerals/{mineral_id}",
         "/v1/minerals/{mineral_id}/optics",
+        "/v1/schemas/mineral",
         "/v1/minerals/{mineral_id}/habits",
         "/v1/minerals/{mineral_id}/habits/{name}",
         "/v1/demonstrations",
