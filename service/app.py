@@ -14,7 +14,7 @@ from fastapi.concurrency import run_in_threadpool
 import service
 from crystal_core.errors import InputError
 from service.problems import Problem, add_handlers
-from service.routes import catalogue, habits, health, minerals, optics, renders
+from service.routes import assets, catalogue, habits, health, minerals, optics, renders, scenes
 from service.settings import Settings
 from service.shield import Shield
 from service.workshop import Workshop
@@ -75,12 +75,12 @@ def create_app(settings: Settings, *, workshop: Workshop | None = None) -> FastA
         lifespan=lifespan,
     )
     app.state.workshop = shop
-    for module in (catalogue, minerals, habits, renders, optics, health):
+    for module in (catalogue, minerals, habits, scenes, assets, renders, optics, health):
         app.include_router(module.router)
     app.frontend("/", directory=page_folder(), fallback=None, check_dir=True)
     _describe_answers(app)
     add_handlers(app)
-    app.add_middleware(Shield, max_body_bytes=settings.max_body_bytes)
+    app.add_middleware(Shield, max_body_bytes=settings.max_body_bytes, larger={"/v1/assets": settings.max_asset_bytes})
     return app
 
 

@@ -322,12 +322,15 @@ def _take(path: Path, request: sequence.RenderRequest, keep_on: Callable[[], Non
 
 def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
     """Return in which of its parts another manifest's request is another one."""
-    names = [key for key in ("demonstration", "seed", "size", "quality") if before.get(key) != now[key]]
+    names = [key for key in ("demonstration", "seed", "size", "quality") if before.get(key) != now.get(key)]
     if before.get("frame_count") != now["frame_count"]:
         names.append("frames")
-    old, new = before.get("parameters"), now["parameters"]
-    if isinstance(old, Mapping):
-        names += sorted(key for key in {*old, *new} if old.get(key) != new.get(key))
+    for part in ("parameters", "document"):  # of a demonstration, of a scene
+        old, new = before.get(part), now.get(part)
+        if isinstance(old, Mapping) and isinstance(new, Mapping):
+            names += sorted(key for key in {*old, *new} if old.get(key) != new.get(key))
+        elif old != new and "demonstration" not in names:
+            names.append(part)
     if not names:
         return "the same request, answered by another version of isogyre or of its mineral data"
     return f"{', '.join(names)} {'differs' if len(names) == 1 else 'differ'}"

@@ -17,6 +17,7 @@ from service.commands.interface import interface
 from service.commands.minerals import minerals
 from service.commands.plate import plate
 from service.commands.render import render
+from service.commands.scene import scene
 from service.commands.serve import serve
 from service.commands.specimen import specimen
 from service.commands.wave_surface import wave_surface
@@ -36,6 +37,7 @@ app.command()(interface)
 app.command()(plate)
 app.command("wave-surface")(wave_surface)
 app.add_typer(minerals, name="minerals")
+app.add_typer(scene, name="scene")
 app.command()(specimen)
 app.command()(serve)
 

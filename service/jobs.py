@@ -133,7 +133,7 @@ class Runner:
         self._pump()
 
     def _prepare(self, stored: Run) -> None:
-        request = sequence.parse_request(stored.request)  # an InputError, if another version accepted it
+        request = sequence.read_request(stored.request)  # an InputError, if another version accepted it
         tiles = len(sequence.tile_grid(request))
         if request.digest() != stored.digest:
             self._log.warning("begun anew: code or data have changed", run=stored.id)

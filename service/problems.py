@@ -111,6 +111,8 @@ _TITLES = {
     "not-yet": "Not ready yet",
     "unknown-render": "No such render",
     "unknown-mineral": "No such mineral",
+    "unknown-asset": "No such asset",
+    "asset": "The file cannot serve as an asset",
     "unknown-habit": "No such habit",
     "rendering-failed": "Rendering failed",
     "internal": "The service has failed",

@@ -43,6 +43,9 @@ class Settings(BaseSettings):
         default=5, description="How far workers stand behind the service when processors are scarce"
     )
     max_body_bytes: Annotated[int, Field(ge=1024)] = Field(default=1_048_576, description="Largest request body")
+    max_asset_bytes: Annotated[int, Field(ge=1024)] = Field(
+        default=16_777_216, description="Largest file that is taken as an asset"
+    )
     minerals_dir: Path | None = Field(
         default=None,
         description="Folder of the user's own minerals. The environment alone decides: every process of a render reads "

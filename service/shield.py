@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import structlog
 from fastapi import Request
 from starlette.datastructures import Headers, MutableHeaders
@@ -34,11 +36,14 @@ class Shield:
         What it shields.
     max_body_bytes : int
         A larger body is answered with a problem (413) and not read to its end.
+    larger : mapping of str to int
+        Paths that take another number of bytes.
     """
 
-    def __init__(self, app: ASGIApp, max_body_bytes: int) -> None:
+    def __init__(self, app: ASGIApp, max_body_bytes: int, larger: Mapping[str, int] | None = None) -> None:
         self._app = app
         self._limit = max_body_bytes
+        self._larger = dict(larger or {})
         self._log = structlog.get_logger("isogyre.http")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -46,6 +51,7 @@ class Shield:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
+        limit = self._larger.get(scope["path"].rstrip("/"), self._limit)
         started = False
         read = 0
 
@@ -53,8 +59,8 @@ class Shield:
             nonlocal read
             message = await receive()
             read += len(message.get("body", b""))
-            if read > self._limit:
-                raise HTTPException(413, self._too_large())
+            if read > limit:
+                raise HTTPException(413, _too_large(limit))
             return message
 
         async def guarded_send(message: Message) -> None:
@@ -69,8 +75,8 @@ class Shield:
             await send(message)
 
         declared = Headers(scope=scope).get("content-length", "0")
-        if not declared.isdecimal() or len(declared) > 18 or int(declared) > self._limit:
-            error = ProblemError(413, "too-large", self._too_large(), headers={"Connection": "close"})
+        if not declared.isdecimal() or len(declared) > 18 or int(declared) > limit:
+            error = ProblemError(413, "too-large", _too_large(limit), headers={"Connection": "close"})
             await problem_response(error)(scope, receive, guarded_send)
             return
         try:
@@ -83,5 +89,6 @@ class Shield:
             error = ProblemError(500, "internal", "This is a fault of the service; its log says more.")
             await problem_response(error)(scope, receive, guarded_send)
 
-    def _too_large(self) -> str:
-        return f"The body of a request may hold {self._limit} bytes"
+
+def _too_large(limit: int) -> str:
+    return f"The body of a request may hold {limit} bytes"

@@ -5,22 +5,33 @@ from __future__ import annotations
 import concurrent.futures
 import fcntl
 import os
-from collections.abc import Callable
-from typing import Self
+from collections.abc import Callable, Mapping
+from typing import Self, TypeVar
 
 import structlog
 
+from crystal_core import sequence
 from crystal_core.errors import InputError
 from service.artifacts import ArtifactStore, make_folder
-from service.engine import DaskEngine, Engine
+from service.assets.shelf import AssetShelf
+from service.engine import DaskEngine, Engine, EngineClosedError, UnitLostError
 from service.events import Bell
 from service.jobs import Runner
 from service.ledger import Ledger
+from service.problems import ProblemError
 from service.settings import Settings
 from service.tile_shelf import TileShelf
 from service.warmth import warm_up
 
 __all__ = ["Workshop"]
+
+T = TypeVar("T")
+
+PATIENCE_S = 60.0
+"""How long somebody who waits for an answer waits for a worker's."""
+
+_ASKED = 10
+"""Priority of what somebody waits for, over the units of renders."""
 
 
 class Workshop:
@@ -39,6 +50,7 @@ class Workshop:
     ledger: Ledger
     store: ArtifactStore
     runner: Runner
+    assets: AssetShelf
 
     def __init__(self, settings: Settings, make_engine: Callable[[], Engine] | None = None) -> None:
         self.settings = settings
@@ -57,7 +69,7 @@ class Workshop:
         """
         folder = self.settings.data_dir
         try:
-            for name in ("", "artifacts", "units", "assets", "scratch"):
+            for name in ("", "artifacts", "units", "scratch"):
                 make_folder(folder / name)
             self._lock = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
         except OSError as error:
@@ -70,9 +82,11 @@ class Workshop:
             raise
         try:
             self.store = ArtifactStore(folder / "artifacts")
+            self.assets = AssetShelf(folder / "assets")
+            self.assets.sweep()
             self._engine = self._make_engine()
             shelf = TileShelf(folder / "units")
-            self.runner = Runner(self.ledger, self._engine, self.store, shelf, self.bell, folder / "assets")
+            self.runner = Runner(self.ledger, self._engine, self.store, shelf, self.bell, self.assets.folder)
             self.runner.open()
         except BaseException:
             self.ledger.close()
@@ -92,6 +106,52 @@ class Workshop:
         self.ledger.close()
         os.close(self._lock)
         self._log.info("closed")
+
+    def read_request(self, body: Mapping[str, object]) -> sequence.RenderRequest:
+        """Return the request of a render, checked; scenes and pictures are looked at in a worker.
+
+        Raises
+        ------
+        InputError, NotSupportedError
+            What is wrong with it, as `parse_request` tells it.
+        ProblemError
+            The workers are busy.
+        """
+        parameters = body.get("parameters")
+        names_asset = isinstance(parameters, Mapping) and any(
+            isinstance(value, str) and value.startswith("asset:") for value in parameters.values()
+        )
+        if "scene" in body or names_asset:
+            return self.work_out(sequence.parse_request, body, self.assets.folder)
+        return sequence.parse_request(body, self.assets.folder)
+
+    def work_out(self, function: Callable[..., T], *args: object) -> T:
+        """Return what a function makes of its arguments, in a worker, before anything that is being rendered.
+
+        Parameters
+        ----------
+        function : callable
+            A module-level function; it and its arguments must pickle.
+        *args : object
+            Its arguments.
+
+        Raises
+        ------
+        ProblemError
+            503: the workers are busy. 422: the function ended the processes that tried it.
+        """
+        try:
+            future = self._engine.submit(function, *args, key=function.__name__, priority=_ASKED)
+        except EngineClosedError as error:
+            raise ProblemError(503, "not-ready", "The service is stopping") from error
+        try:
+            return future.result(PATIENCE_S)
+        except TimeoutError:
+            future.cancel()
+            detail = f"No worker had an answer within {PATIENCE_S:g} s"
+            raise ProblemError(503, "not-ready", detail, headers={"Retry-After": "10"}) from None
+        except UnitLostError as error:
+            raise ProblemError(422, "too-demanding", "It takes more memory than a worker has") from error
 
     def check(self) -> str | None:
         """Return why no render would be done now, None if all is well."""

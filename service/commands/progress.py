@@ -41,7 +41,7 @@ class BatchProgress:
             expand=True,
             speed_estimate_period=_SPEED_PERIOD_S,
         )
-        self._task = self._progress.add_task(batch.request.demonstration, total=batch.units, frames=self._frames())
+        self._task = self._progress.add_task(batch.request.name, total=batch.units, frames=self._frames())
 
     def advance(self) -> None:
         """Note that a unit is done."""

@@ -1,4 +1,4 @@
-"""`isogyre render`: a demonstration's frames, animation and manifest in a folder."""
+"""`isogyre render`: the frames of a demonstration or a scene, animation and manifest in a folder."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crystal_core.errors import Fault, InputError, IsogyreError
+from crystal_core.errors import Fault, InputError, IsogyreError, NotSupportedError
 from service.commands.complaint import complain
 from service.interruption import Interruption
 
@@ -25,28 +25,39 @@ _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM
 
 
 def render(
-    demonstration: Annotated[str, typer.Argument(help="Such as rotating-calcite.", metavar="DEMONSTRATION")],
+    what: Annotated[
+        str,
+        typer.Argument(
+            help="A demonstration such as rotating-calcite, or the file of a scene: .yaml, .yml or .json.",
+            metavar="DEMONSTRATION|FILE",
+        ),
+    ],
     out: Annotated[str, typer.Option(help="Folder for the frames; made if need be.", metavar="DIR")],
     assignments: Annotated[
         list[str] | None,
         typer.Option(
             "--set",
-            help="A parameter, as JSON or a plain word; any number of times. texture takes a PNG or JPEG file.",
+            help="A parameter of a demonstration, as JSON or a plain word; any number of times. texture takes a PNG "
+            "or JPEG file.",
             metavar="KEY=VALUE",
         ),
     ] = None,
     frames: Annotated[
-        int | None, typer.Option(help="Frames of a full turn, 1 to 360 [default: 36].", metavar="N")
+        int | None, typer.Option(help="Frames, 1 to 360 [default: 36, or the scene's own].", metavar="N")
     ] = None,
     size: Annotated[
         str | None,
-        typer.Option(help="Width and height in pixels, 16 to 2048 each [default: 512x512].", metavar="WxH"),
+        typer.Option(
+            help="Width and height in pixels, 16 to 2048 each [default: 512x512, or the scene's own].", metavar="WxH"
+        ),
     ] = None,
     quality: Annotated[
         str | None,
-        typer.Option(help="draft, standard or fine [default: standard].", metavar="QUALITY"),
+        typer.Option(help="draft, standard or fine [default: standard, or the scene's own].", metavar="QUALITY"),
     ] = None,
-    seed: Annotated[int | None, typer.Option(help="Of the random numbers [default: 0].", metavar="N")] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="Of the random numbers [default: 0, or the scene's own].", metavar="N")
+    ] = None,
     workers: Annotated[
         int | None,
         typer.Option(
@@ -60,20 +71,20 @@ def render(
         bool, typer.Option("--json", help="Print one line of JSON on stdout at the end: what is in the folder.")
     ] = False,
 ) -> int:
-    """Render a demonstration into a folder.
+    """Render a demonstration or a scene into a folder.
 
     The folder receives frame-0000.png and so on, sequence.webp and manifest.json.
 
     Ctrl-C leaves the finished frames; the same command goes on from there.
     """
     os.environ.update(_ONE_THREAD)
-    asked = {"demonstration": demonstration, "frames": frames, "quality": quality, "seed": seed}
+    asked = {"frames": frames, "quality": quality, "seed": seed}
     with Interruption() as interruption:
         try:
-            folder = _render(asked, size, assignments or [], out, workers, interruption)
+            folder = _render(what, asked, size, assignments or [], out, workers, interruption)
         except IsogyreError as error:
             # Whoever ends this process may have ended its workers too: what they then complain of is of no interest.
-            if not interruption or isinstance(error, InputError):
+            if not interruption or isinstance(error, InputError | NotSupportedError):
                 raise
             complain(f"interrupted; what is finished is in {out}, and the same command goes on")
             return interruption.exit_code
@@ -83,6 +94,7 @@ def render(
 
 
 def _render(
+    what: str,
     asked: Mapping[str, object],
     size: str | None,
     assignments: Sequence[str],
@@ -94,7 +106,7 @@ def _render(
     from service.batch_folder import open_batch_folder
 
     with tempfile.TemporaryDirectory(prefix="isogyre-assets-") as assets:
-        request = _read_request(asked, size, assignments, out, Path(assets))
+        request = _read_request(what, asked, size, assignments, out, Path(assets))
         with open_batch_folder(Path(out), request, interruption.check) as folder:
             if not folder.complete:
                 _fill(folder, Path(assets), workers or len(os.sched_getaffinity(0)), interruption)
@@ -102,31 +114,69 @@ def _render(
 
 
 def _read_request(
-    asked: Mapping[str, object], size: str | None, assignments: Sequence[str], out: str, assets: Path
+    what: str, asked: Mapping[str, object], size: str | None, assignments: Sequence[str], out: str, assets: Path
 ) -> RenderRequest:
     """Return the request of the options; one `InputError` tells of all that is wrong with them."""
-    from crystal_core.sequence import parse_request
     from service.batch_folder import unusable_reason
-    from service.commands.assignment import keep_texture, parse_assignments, parse_size
+    from service.commands.assignment import parse_size
+    from service.scenes.file import is_scene_file
 
-    parameters, faults = parse_assignments(assignments)
-    request = {key: value for key, value in asked.items() if value is not None} | {"parameters": parameters}
+    faults: list[Fault] = []
+    request = {key: value for key, value in asked.items() if value is not None}
     try:
         if size is not None:
             request["size"] = parse_size(size)
     except InputError as error:
         faults += error.faults
+    if (reason := unusable_reason(Path(out)) if out else "must name a folder") is not None:
+        faults.append(Fault("--out", reason))
+    try:
+        read = _read_scene if is_scene_file(what) else _read_demonstration
+        parsed = read(what, request, assignments, assets)
+    except InputError as error:
+        raise InputError([*faults, *error.faults]) from None
+    if faults:
+        raise InputError(faults)
+    return parsed
+
+
+def _read_demonstration(
+    name: str, settings: Mapping[str, object], assignments: Sequence[str], assets: Path
+) -> RenderRequest:
+    from crystal_core.sequence import parse_request
+    from service.commands.assignment import keep_texture, parse_assignments
+
+    parameters, faults = parse_assignments(assignments)
     try:
         if "texture" in parameters:
             parameters["texture"] = keep_texture(str(parameters.pop("texture")), assets)
     except InputError as error:
         faults += error.faults
-    if (reason := unusable_reason(Path(out)) if out else "must name a folder") is not None:
-        faults.append(Fault("--out", reason))
     try:
-        parsed = parse_request(request, assets)
+        parsed = parse_request({"demonstration": name, "parameters": parameters, **settings}, assets)
     except InputError as error:
         raise InputError([*faults, *error.faults]) from None
+    if faults:
+        raise InputError(faults)
+    return parsed
+
+
+def _read_scene(file: str, settings: Mapping[str, object], assignments: Sequence[str], assets: Path) -> RenderRequest:
+    from crystal_core.sequence import parse_request
+    from service.scenes.file import SceneFile
+
+    faults = [Fault("--set", "goes with a demonstration: a scene's file says everything itself")] if assignments else []
+    try:
+        scene = SceneFile(file)
+        parsed = parse_request({"scene": scene.with_assets(assets), **settings}, assets)
+    except InputError as error:
+        own = [
+            Fault(f"{file}: {f.pointer.removeprefix('/scene')}", f.message) if f.pointer.startswith("/scene/") else f
+            for f in error.faults
+        ]
+        raise InputError([*faults, *own]) from None
+    except NotSupportedError as error:
+        raise NotSupportedError(f"{file}: {str(error).removeprefix('/scene')}") from None
     if faults:
         raise InputError(faults)
     return parsed

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import Depends, Request, Response
 
-from service.problems import MEDIA_TYPE
+from crystal_core.errors import InputError
+from service.problems import MEDIA_TYPE, ProblemError
 from service.workshop import Workshop
 
-__all__ = ["IMMUTABLE", "TheWorkshop", "is_known", "preferred_type", "problem_answers", "unchanged"]
+__all__ = ["IMMUTABLE", "TheWorkshop", "is_known", "json_body", "preferred_type", "problem_answers", "unchanged"]
 
 IMMUTABLE = "public, max-age=31536000, immutable"
 """``Cache-Control`` of what never changes under its address."""
@@ -29,6 +31,26 @@ def is_known(request: Request, etag: str) -> bool:
     asked = request.headers.get("if-none-match", "")
     tags = [tag.strip().removeprefix("W/") for tag in asked.split(",")]
     return "*" in tags or etag in tags
+
+
+async def json_body(request: Request) -> dict[str, Any]:
+    """Return the JSON object that is the body of a request.
+
+    Raises
+    ------
+    ProblemError, InputError
+        It is not declared as JSON, is none, or is no object.
+    """
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
+        raise ProblemError(415, "media-type", "The body must be declared as application/json")
+    try:
+        body = json.loads(await request.body())
+    except (ValueError, RecursionError) as error:  # a UnicodeDecodeError is a ValueError
+        raise ProblemError(400, "json", f"The body is not JSON: {error}") from None
+    if not isinstance(body, dict):
+        raise InputError.at("", "the body must be an object")
+    return body
 
 
 def unchanged(etag: str, cache_control: str) -> Response:
@@ -69,10 +91,10 @@ def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
             "description": {
                 404: "There is nothing of this name (yet)",
                 413: "The body is too large",
-                415: "The body is not declared as JSON",
+                415: "The body is not declared as what it must be",
                 422: "The request cannot be carried out as it stands; `errors` names every wrong place",
                 400: "The body is not JSON",
-                503: "No render would be done now",
+                503: "It cannot be done now; try again",
             }[status],
             "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
         }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import AsyncIterator
 from typing import Annotated, Any, Literal
 
@@ -17,7 +16,7 @@ from crystal_core.sequence.request import MAX_FRAMES, MAX_SIDE, MIN_SIDE
 from service.press import MANIFEST, SEQUENCE, manifest_bytes
 from service.problems import ProblemError
 from service.records import Job, frame_name
-from service.routes.common import IMMUTABLE, TheWorkshop, is_known, problem_answers, unchanged
+from service.routes.common import IMMUTABLE, TheWorkshop, is_known, json_body, problem_answers, unchanged
 from service.streams import watch
 from service.views import Render, render_view
 from service.workshop import Workshop
@@ -26,25 +25,46 @@ __all__ = ["router"]
 
 router = APIRouter(prefix="/v1/renders", tags=["renders"])
 
-_REQUEST_SCHEMA: dict[str, Any] = {
-    "type": "object",
-    "required": ["demonstration"],
-    "properties": {
-        "demonstration": {"type": "string", "description": "A name from /v1/demonstrations"},
-        "parameters": {"type": "object", "description": "After the demonstration's schema", "default": {}},
-        "frames": {"type": "integer", "minimum": 1, "maximum": MAX_FRAMES, "default": 36},
-        "size": {
-            "type": "array",
-            "description": "Width and height in pixels",
-            "items": {"type": "integer", "minimum": MIN_SIDE, "maximum": MAX_SIDE},
-            "minItems": 2,
-            "maxItems": 2,
-            "default": [512, 512],
-        },
-        "quality": {"type": "string", "enum": ["draft", "standard", "fine"], "default": "standard"},
-        "seed": {"type": "integer", "minimum": 0, "maximum": 2**63 - 1, "default": 0},
+_SETTINGS: dict[str, Any] = {
+    "frames": {"type": "integer", "minimum": 1, "maximum": MAX_FRAMES},
+    "size": {
+        "type": "array",
+        "description": "Width and height in pixels",
+        "items": {"type": "integer", "minimum": MIN_SIDE, "maximum": MAX_SIDE},
+        "minItems": 2,
+        "maxItems": 2,
     },
-    "additionalProperties": False,
+    "quality": {"type": "string", "enum": ["draft", "standard", "fine"]},
+    "seed": {"type": "integer", "minimum": 0, "maximum": 2**63 - 1},
+}
+
+_DEFAULTS: dict[str, Any] = {"frames": 36, "size": [512, 512], "quality": "standard", "seed": 0}
+
+_REQUEST_SCHEMA: dict[str, Any] = {
+    "oneOf": [
+        {
+            "title": "A demonstration",
+            "type": "object",
+            "required": ["demonstration"],
+            "properties": {
+                "demonstration": {"type": "string", "description": "A name from /v1/demonstrations"},
+                "parameters": {"type": "object", "description": "After the demonstration's schema", "default": {}},
+                **{key: {**schema, "default": _DEFAULTS[key]} for key, schema in _SETTINGS.items()},
+            },
+            "additionalProperties": False,
+        },
+        {
+            "title": "A scene",
+            "type": "object",
+            "required": ["scene"],
+            "description": "What stands beside the scene replaces what it says of itself",
+            "properties": {
+                "scene": {"type": "object", "description": "After /v1/scenes/schema; files are named as assets"},
+                **_SETTINGS,
+            },
+            "additionalProperties": False,
+        },
+    ],
     "example": {"demonstration": "rotating-calcite", "frames": 12, "size": [256, 256], "quality": "draft"},
 }
 
@@ -64,15 +84,17 @@ TheJob = Annotated[Job, Depends(_the_job)]
     status_code=202,
     summary="Ask for a render",
     response_model=Render,
-    responses=problem_answers(400, 413, 415, 422),
+    responses=problem_answers(400, 413, 415, 422, 503),
     openapi_extra={"requestBody": {"required": True, "content": {"application/json": {"schema": _REQUEST_SCHEMA}}}},
 )
 async def create(request: Request, workshop: TheWorkshop) -> Response:
     """Accept a render; ``Location`` says where it can be watched.
 
-    Equal requests share their work: the second one is answered from what the first has done.
+    A demonstration with parameters, or a scene. A texture or a mesh of one's own is handed over first, at
+    ``/v1/assets``, and named by its digest. Equal requests share their work: the second one is answered from what the
+    first has done.
     """
-    body = await _json_body(request)
+    body = await json_body(request)
     job = await run_in_threadpool(_submit, workshop, body)
     view = await run_in_threadpool(_view, workshop, job)
     headers = {"Location": view.links.self, "Retry-After": "1", "Cache-Control": "no-store"}
@@ -153,36 +175,15 @@ def manifest(request: Request, job: TheJob, workshop: TheWorkshop) -> Response:
         return _file(request, workshop, job, MANIFEST, "the manifest")
     try:
         content = manifest_bytes(
-            sequence.parse_request(job.run.request), workshop.ledger.frames(job.run.id), complete=False
+            sequence.read_request(job.run.request), workshop.ledger.frames(job.run.id), complete=False
         )
     except InputError as error:  # not the caller's fault: the request was accepted by another version
         raise ProblemError(404, "not-found", f"This version cannot describe the request: {error}") from error
     return Response(content, media_type="application/json", headers={"Cache-Control": "no-store"})
 
 
-async def _json_body(request: Request) -> dict[str, Any]:
-    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
-        raise ProblemError(415, "media-type", "The body must be declared as application/json")
-    try:
-        body = json.loads(await request.body())
-    except (ValueError, RecursionError) as error:  # a UnicodeDecodeError is a ValueError
-        raise ProblemError(400, "json", f"The body is not JSON: {error}") from None
-    if not isinstance(body, dict):
-        raise InputError.at("", "the body must be an object")
-    return body
-
-
 def _submit(workshop: Workshop, body: dict[str, Any]) -> Job:
-    request = sequence.parse_request(body)
-    _refuse_own_pictures(request)
-    return workshop.runner.submit(request)
-
-
-def _refuse_own_pictures(request: sequence.RenderRequest) -> None:
-    texture = request.canonical()["parameters"].get("texture", "digits")
-    if texture != "digits":
-        raise InputError.at("/parameters/texture", 'only "digits" here; the command line also takes a picture\'s path')
+    return workshop.runner.submit(workshop.read_request(body))
 
 
 def _view(workshop: Workshop, job: Job) -> Render:

@@ -32,6 +32,7 @@ NAMES = (
     "frame_angle_deg",
     "manifest",
     "parse_request",
+    "read_request",
     "render_tile",
     "tile_grid",
 )
@@ -105,7 +106,7 @@ def demonstrations() -> Mapping[str, Any]:
     return {"fake": SimpleNamespace(name="fake", title=words, summary=words, Parameters=Parameters)}
 
 
-def parse_request(obj: Mapping[str, object]) -> RenderRequest:
+def parse_request(obj: Mapping[str, object], assets: Path | None = None) -> RenderRequest:  # noqa: ARG001
     faults = [Fault(f"/{key}", "unknown") for key in set(obj) - set(RenderRequest.model_fields)]
     if obj.get("demonstration") != "fake":
         faults.append(Fault("/demonstration", "unknown"))
@@ -115,6 +116,10 @@ def parse_request(obj: Mapping[str, object]) -> RenderRequest:
     if faults:
         raise InputError(faults)
     return RenderRequest(**{"parameters": {}, "frames": 3, "size": size, "quality": "draft", "seed": 0, **obj})
+
+
+def read_request(obj: Mapping[str, object]) -> RenderRequest:
+    return parse_request(obj)
 
 
 def tile_grid(request: RenderRequest) -> tuple[Tile, ...]:

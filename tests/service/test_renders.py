@@ -201,10 +201,3 @@ def test_a_small_render_does_not_wait_for_a_large_one(client: TestClient) -> Non
     assert small["status"] == "successful"
     assert client.get(large).json()["status"] == "running"
     client.delete(large)
-
-
-def test_pictures_of_the_callers_own_are_refused(client: TestClient) -> None:
-    for texture in ("asset:" + "0" * 64, "/etc/passwd"):
-        answer = client.post("/v1/renders", json={"demonstration": "fake", "parameters": {"texture": texture}})
-        assert answer.status_code == 422
-        assert answer.json()["errors"][0]["pointer"] == "/parameters/texture"

@@ -1,0 +1,1 @@
+"""Files that callers hand over: pictures to print, meshes of their own."""

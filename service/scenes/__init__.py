@@ -1,0 +1,1 @@
+"""Scenes as people and programs are told of them."""
