@@ -9,7 +9,7 @@ import pytest
 
 from crystal_core.errors import InputError
 from crystal_core.scene import parse_scene
-from tests.scene.staging import BOX, CALCITE, TABLE, body, bodies, scene
+from tests.scene.staging import BOX, CALCITE, TABLE, bodies, body, scene
 
 
 def faults(mapping: Any) -> dict[str, str]:
@@ -31,8 +31,8 @@ def test_several_faults_are_told_at_once() -> None:
     assert told.pop("/bodies/a/mineral").startswith("no mineral 'calcit'; do you mean calcite")
     assert told == {
         "/titel": "unknown key; did you mean title?",
-        "/bodies/a/shape/sphere": "does not go with box: give one of habit, cleavage, box, plate, wedge, prism, column, "
-        "sphere, cabochon, brilliant, step_cut, mesh",
+        "/bodies/a/shape/sphere": "does not go with box: give one of habit, cleavage, box, plate, wedge, prism, "
+        "column, sphere, cabochon, brilliant, step_cut, mesh",
         "/bodies/a/shape/box/size_mm/1": 'must be a number, not "2" (a number in quotes, or one like 1e3, is text: '
         "write 1000 or 1.0e+3)",
         "/lights": "needs at least 1 values",
@@ -55,7 +55,7 @@ def test_several_faults_are_told_at_once() -> None:
         (bodies(a=body(CALCITE, optics={"n": 1})), "/bodies/a/optics", "does not go with mineral"),
         (bodies(a=body(BOX, optics={"n": 1, "o": 1})), "/bodies/a/optics", "give n, or o and e"),
         (bodies(a=body(BOX, optics={"n": 11})), "/bodies/a/optics/n", "must be at most 10"),
-        (bodies(a=body(BOX, optics={"n": {"cauchy": {"a": 1, "b_um2": -1}}})), "/bodies/a/optics/n/cauchy", "goes from"),
+        (bodies(a=body(BOX, optics={"n": {"cauchy": {"a": 1, "b_um2": -1}}})), "/bodies/a/optics/n/cauchy", "from"),
         (bodies(a=body(BOX, concentrations={"chromium": 1})), "/bodies/a/concentrations", "goes with a mineral"),
         (bodies(a=body(CALCITE, concentrations={"iron": 1})), "/bodies/a/concentrations/iron", "calcite has no chrom"),
         (bodies(a=body(BOX, shape={"habit": {}})), "/bodies/a/shape/habit", "has no lattice"),

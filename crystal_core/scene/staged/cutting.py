@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
+from crystal_core.errors import InputError
 from crystal_core.geometry.boxes import box, plate, wedge
 from crystal_core.geometry.brilliant import PROPORTIONS, brilliant
 from crystal_core.geometry.cabochon import Cabochon, cabochon
@@ -17,10 +18,11 @@ from crystal_core.geometry.prisms import column, prism
 from crystal_core.geometry.solid import Solid
 from crystal_core.geometry.sphere import Sphere, sphere
 from crystal_core.geometry.step_cut import StepProportions, step_cut
+from crystal_core.scene.contents import file_suffix
 from crystal_core.scene.scene_files import SceneFiles
-from crystal_core.scene.shapes import Brilliant, Shape, StepCut
+from crystal_core.scene.shapes import MESH_SUFFIXES, Brilliant, Shape, StepCut
 
-__all__ = ["AnySolid", "cut_solid", "mesh_suffix"]
+__all__ = ["AnySolid", "cut_solid"]
 
 AnySolid = Solid[ConvexPolyhedron] | Solid[Sphere] | Solid[Cabochon] | Solid[Mesh]
 
@@ -47,24 +49,19 @@ def cut_solid(shape: Shape, files: SceneFiles, pointer: str) -> tuple[AnySolid, 
     at = f"{pointer}/{shape.kind}"
     if shape.mesh is not None:
         data = files.read(shape.mesh.file, f"{at}/file")
-        loaded = load_mesh(data, mesh_suffix(shape.mesh.file, data), shape.mesh.size_mm, pointer=at)
+        loaded = load_mesh(data, _suffix(shape.mesh.file, data, f"{at}/file"), shape.mesh.size_mm, pointer=at)
         return loaded.solid, loaded.notes
     return _CUTTERS[shape.kind](shape, at), ()
 
 
-def mesh_suffix(name: str, data: bytes) -> str:
-    """Return the suffix that tells a mesh's format: of its name, or of what an asset's bytes begin with."""
+def _suffix(name: str, data: bytes, pointer: str) -> str:
+    """Return the suffix that tells a mesh's format: of its name, or what an asset's bytes look like."""
     if not name.startswith("asset:"):
         return PurePath(name).suffix.lower()
-    start = data[:512].lstrip()
-    if data.startswith(b"glTF"):
-        return ".glb"
-    if start.startswith(b"{"):
-        return ".gltf"
-    if start.startswith(b"ply"):
-        return ".ply"
-    binary_stl = len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
-    return ".stl" if binary_stl or start[:5].lower() == b"solid" else ".obj"
+    suffix = file_suffix(data)
+    if suffix not in MESH_SUFFIXES:
+        raise InputError.at(pointer, f"the asset is no mesh: those are {', '.join(MESH_SUFFIXES)}")
+    return suffix
 
 
 def _box(shape: Shape, pointer: str) -> Solid:
