@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, Delaunay
 
 import minerals_db
 from crystal_core.errors import InputError
@@ -41,6 +41,10 @@ def check_closed(body: ConvexPolyhedron) -> None:
     assert {(j, i) for i, j in ends} == set(ends)
     assert len(body.vertices) - len(ends) // 2 + len(body.faces) == 2
     assert set(body.edges) | {(j, i) for i, j in body.edges} == set(ends)
+    for ends_of_edge, (face, other) in body.edges.items():
+        for number, (i, j) in ((face, ends_of_edge), (other, ends_of_edge[::-1])):
+            ring = body.faces[number]
+            assert ring[(ring.index(i) + 1) % len(ring)] == j
     size = diameter(body.vertices)
     gaps = body.vertices @ body.normals.T - body.offsets
     assert gaps.max() < 1e-12 * size
@@ -116,6 +120,18 @@ def test_size_and_centre(mineral_id: str, name: str) -> None:
     apart = np.linalg.norm(body.vertices[:, None] - body.vertices[None], axis=2)
     assert apart.max() == pytest.approx(SIZE_MM, rel=1e-12)
     np.testing.assert_allclose(centroid(body), 0.0, atol=1e-12 * SIZE_MM)
+    # Tetrahedra of a triangulation instead of pyramids over the faces.
+    corners = body.vertices[Delaunay(body.vertices).simplices]
+    volumes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
+    np.testing.assert_allclose(volumes @ corners.mean(axis=1) / volumes.sum(), 0.0, atol=1e-11 * SIZE_MM)
+
+
+@pytest.mark.parametrize("scale", [1e-200, 1e-3, 1e200])
+def test_only_ratios_of_distances_count(scale: float) -> None:
+    forms = [Form((1, 1, 1), 1.0), Form((1, 0, 0), 0.9)]
+    scaled_forms = [Form(form.hkl, scale * form.central_distance) for form in forms]
+    one, other = (habit_solid(CUBIC, FULL, drawn, 1.0).body for drawn in (forms, scaled_forms))
+    np.testing.assert_allclose(one.vertices, other.vertices, atol=1e-12)
 
 
 @pytest.mark.parametrize(("mineral_id", "name"), HABITS)
