@@ -97,7 +97,8 @@ class Cabochon:
     def normal(self, face: NDArray[np.intp], point: Real) -> Real:
         """Return outward unit normals, shape (3, N), of faces, shape (N,), at points on them, shape (3, N)."""
         gradient = self._own(point - self.centre[:, None]) / self.semi_axes_mm[:, None]
-        gradient /= np.sqrt(dot(gradient, gradient))
+        length = np.sqrt(dot(gradient, gradient))
+        gradient /= np.where(length > 0.0, length, 1.0)  # 0 at the ellipsoid's centre, which lies on a base
         return np.where(face == DOME, turned(self.rotation, gradient), -self.rotation[:, 2:])
 
     def span(self, point: Real, direction: Real) -> tuple[Real, Real, NDArray[np.intp], NDArray[np.intp]]:
@@ -105,7 +106,8 @@ class Cabochon:
         start, ahead = self._own(point - self.centre[:, None]), self._own(direction)
         enters, leaves = sphere_chord(start, ahead)
         height, speed = start[2] - self.floor, ahead[2]
-        with np.errstate(divide="ignore", invalid="ignore"):  # a line along the base: ±inf, or NaN on its plane
+        # A line along the base or nearly: ±inf, or NaN on its plane.
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             base = -height / speed
         entry, exit_ = np.full(len(base), DOME, np.intp), np.full(len(base), DOME, np.intp)
         later, sooner = (speed > 0.0) & (base > enters), (speed < 0.0) & (base < leaves)
@@ -118,7 +120,7 @@ class Cabochon:
         start, ahead = self._own(point - self.centre[:, None]), self._own(direction)
         # On the dome and along it: rounding may see a miss.
         leaves = np.maximum(sphere_chord(start, ahead)[1], 0.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             base = np.maximum((self.floor - start[2]) / ahead[2], 0.0)
         down = (ahead[2] < 0.0) & (base < leaves)
         return np.where(down, base, leaves), np.where(down, BASE, DOME)

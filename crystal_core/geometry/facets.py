@@ -54,7 +54,8 @@ def compass(step: int, steps: int) -> tuple[float, float]:
     elif 8 * rest < steps:
         x, y = cos(2 * pi * rest / steps), sin(2 * pi * rest / steps)
     else:
-        y, x = cos(pi / 2 - 2 * pi * rest / steps), sin(pi / 2 - 2 * pi * rest / steps)
+        left = steps // 4 - rest
+        y, x = cos(2 * pi * left / steps), sin(2 * pi * left / steps)
     return ((x, y), (-y, x), (-x, -y), (y, -x))[quarter]
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 from scipy.spatial.distance import cdist
 
 from crystal_core.errors import InputError
@@ -118,5 +117,9 @@ def _centroid(surface: Surface) -> Real:
 
 def _diameter(vertices: Real) -> float:
     """Return the greatest distance between two of many points, shape (V, 3)."""
-    outer = vertices[ConvexHull(vertices).vertices]
+    from_centre = np.linalg.norm(vertices - 0.5 * (vertices.min(axis=0) + vertices.max(axis=0)), axis=1)
+    outermost = int(from_centre.argmax())
+    least = float(np.linalg.norm(vertices - vertices[outermost], axis=1).max())
+    # No point is farther from another than both are from the centre together.
+    outer = vertices[from_centre + from_centre[outermost] >= least]
     return max(float(cdist(outer[start : start + 500], outer).max()) for start in range(0, len(outer), 500))
