@@ -187,7 +187,7 @@ class Choice(Part):
 
 
 def _follows_from_others(detail: Any, details: Sequence[Any]) -> bool:
-    """Tell whether a list or mapping is too short only because what is in it is wrong: pydantic counts what is right."""
+    """Tell whether a list or mapping is too short only because items are wrong: pydantic counts the right ones."""
     place = detail["loc"]
     return detail["type"] == "too_short" and any(
         len(other["loc"]) > len(place) and other["loc"][: len(place)] == place for other in details

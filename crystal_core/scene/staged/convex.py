@@ -32,6 +32,9 @@ ROUNDS = 100
 SURE_MM = 1e-8
 """A deepest point is found when a further touching plane would change its depth by less."""
 
+NEAR_ENOUGH = 0.003
+"""Part of a depth to which it is found: its sign is what counts."""
+
 _AXES = np.concatenate((np.eye(3), -np.eye(3)))
 
 
@@ -91,7 +94,8 @@ def depth_in(host: Body, inner: Body) -> float:
 def overlap(one: Body, other: Body | Plane) -> float:
     """Return the radius of the largest ball inside both, or inside one with its middle on a plane, mm.
 
-    Negative where they do not meet: then −2 × it is about their distance.
+    Negative where they do not meet: then −2 × it is about their distance. Its sign is exact; where an ellipsoid takes
+    part its size is right to a few percent.
     """
     if isinstance(one, Mesh):
         return _overlap_of_mesh(one, other)
@@ -114,7 +118,7 @@ def overlap(one: Body, other: Body | Plane) -> float:
         radius, middle = _deepest(normals, offsets, on_plane)
         more = [body.tangents(middle) for body in curved]
         slack = min((float((o - n @ middle).min()) for n, o in more), default=radius)
-        if slack >= radius - SURE_MM:
+        if slack >= radius - max(SURE_MM, NEAR_ENOUGH * abs(radius)):
             break
         normals = np.concatenate((normals, *(n for n, _ in more)))
         offsets = np.concatenate((offsets, *(o for _, o in more)))
