@@ -15,6 +15,7 @@ from crystal_core.errors import NotSupportedError
 from crystal_core.geometry import ConvexPolyhedron, face_finder
 from crystal_core.optics import Medium
 from crystal_core.scene.lights import Light
+from crystal_core.scene.shapes import Plate, Wedge
 from crystal_core.scene.staged.body import StagedBody
 from crystal_core.scene.staged.flat import StagedSurface
 from crystal_core.scene.staged.lamp import StagedLight
@@ -33,6 +34,9 @@ camera's would be: half of unpolarized light passes."""
 
 SAME_PLANE_MM = 1.0
 """A table so little below the page counts as the table around it."""
+
+THIN_UM = 1000.0
+"""Plates and wedges thinner than this are about interference, which the renderer does not know yet."""
 
 PLAIN_MM = 64.0
 """Width of the page that stands for a table alone."""
@@ -120,12 +124,20 @@ def _body(scene: StagedDocument) -> tuple[StagedBody, ConvexPolyhedron]:
         raise _refused(
             f"{body.pointer}/shape/{written.shape.kind}", "only convex bodies of plane faces can be drawn yet"
         )
+    thin = written.shape.plate or written.shape.wedge
+    if thin is not None and scene.document.render.interference and _thickest(thin) < THIN_UM:
+        reason = "interference in thin bodies cannot be drawn yet; without it: /render/interference: false"
+        raise _refused(f"{body.pointer}/shape/{written.shape.kind}", reason)
     if written.optics is not None:
         raise _refused(f"{body.pointer}/optics", "only minerals and glasses of the database can be drawn yet")
     around = scene.document.surroundings
     if around.optics is None or around.optics.n != 1.0:
         raise _refused("/surroundings", "only surroundings of air (n: 1) can be drawn yet")
     return body, shape
+
+
+def _thickest(thin: Plate | Wedge) -> float:
+    return thin.thickness_um if isinstance(thin, Plate) else thin.thickness_um[1]
 
 
 def _ground(scene: StagedDocument) -> tuple[StagedSurface | None, StagedSurface | None]:

@@ -156,6 +156,14 @@ def test_a_glass_box_can_be_drawn() -> None:
             },
             "/bodies/t/twin",
         ),
+        (
+            {
+                "bodies": {
+                    "w": {"mineral": "quartz", "shape": {"wedge": {"thickness_um": [0, 250]}}, "rests_on": "table"}
+                }
+            },
+            "/bodies/w/shape/wedge",
+        ),
         ({"surroundings": {"optics": {"n": 1.3}}}, "/surroundings"),
         ({"sheets": {"p": {"polarizer": {}, "position_mm": [0, 0, 50]}}}, "/sheets/p"),
         ({"surfaces": {"table": TABLE | {"reflectance": {"srgb": [1, 0, 0]}}}}, "/surfaces/table/reflectance"),
