@@ -227,6 +227,8 @@ def _parsed(data: bytes, kind: str, pointer: str) -> tuple[Real, Index, tuple[st
         notes.append("left out the materials of another file")
     if not any(len(mesh.faces) for mesh in meshes):
         raise InputError.at(pointer, "the file holds no triangles")
+    if any(mesh.vertices.shape[1:] != (3,) or mesh.faces.shape[1:] != (3,) for mesh in meshes):
+        raise _no_mesh(kind, "corners are not three numbers each", pointer)
     vertices = np.concatenate([np.asarray(mesh.vertices, np.float64) for mesh in meshes])
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     triangles = np.concatenate(

@@ -112,6 +112,7 @@ def test_other_formats() -> None:
     assert _refused(b"solid", ".step") == "a mesh is a file .obj, .ply, .stl, .glb, .gltf, not '.step'"
     assert "no triangles" in _refused(b"v 0 0 0\nv 1 0 0\nl 1 2\n", ".obj")
     assert "IndexError" in _refused(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n", ".obj")
+    assert "not three numbers each" in _refused(b"v 0 0\nv 1 0\nv 1 1\nf 1 2 3\n", ".obj")
     assert "relative (negative)" in _refused(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf -1 -2 -3\n", ".obj")
     ply = file_of(BOX, ".ply")
     assert _refused(ply.replace(b"element face 12", b"element face 11"))
