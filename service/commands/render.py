@@ -166,20 +166,24 @@ def _read_scene(file: str, settings: Mapping[str, object], assignments: Sequence
     from service.scenes.file import SceneFile
 
     faults = [Fault("--set", "goes with a demonstration: a scene's file says everything itself")] if assignments else []
+    name = Path(file).name
     try:
-        scene = SceneFile(file)
-        parsed = parse_request({"scene": scene.with_assets(assets), **settings}, assets)
+        scene = SceneFile(file).with_assets(assets)
+        parsed = parse_request({"scene": scene, **settings}, assets)
     except InputError as error:
-        own = [
-            Fault(f"{file}: {f.pointer.removeprefix('/scene')}", f.message) if f.pointer.startswith("/scene/") else f
-            for f in error.faults
-        ]
-        raise InputError([*faults, *own]) from None
+        told = [Fault(_in_file(name, fault.pointer), fault.message) for fault in error.faults]
+        raise InputError([*faults, *told]) from None
     except NotSupportedError as error:
-        raise NotSupportedError(f"{file}: {str(error).removeprefix('/scene')}") from None
+        raise NotSupportedError(f"{name}: {str(error).removeprefix('/scene')}") from None
     if faults:
         raise InputError(faults)
     return parsed
+
+
+def _in_file(name: str, pointer: str) -> str:
+    """Return the place of a fault of a request in the file of its scene; a pointer that leads elsewhere as it is."""
+    head, slash, rest = pointer[1:].partition("/")
+    return pointer if head != "scene" or not pointer.startswith("/") else f"{name}: /{rest}" if slash else name
 
 
 def _fill(folder: BatchFolder, assets: Path, workers: int, interruption: Interruption) -> None:

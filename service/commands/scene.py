@@ -46,7 +46,7 @@ def validate(file: SceneArgument, as_json: AsJson = False) -> int:
     except (InputError, NotSupportedError) as error:
         if not as_json:
             raise
-        print_json({"valid": False, "errors": _errors(file, error)})
+        print_json({"valid": False, "errors": _errors(Path(file).name, error)})
         return _FAULTY
     warnings = warnings_of(staged)
     if as_json:
@@ -133,12 +133,12 @@ def _view(text: str) -> View:
     return known[known.index(text)]
 
 
-def _errors(file: str, error: InputError | NotSupportedError) -> list[dict[str, str]]:
+def _errors(name: str, error: InputError | NotSupportedError) -> list[dict[str, str]]:
     """Return the faults of a scene, by their places in it alone."""
     if isinstance(error, NotSupportedError):
-        return [{"pointer": "", "detail": str(error).removeprefix(f"{file}: ")}]
+        return [{"pointer": "", "detail": str(error).removeprefix(f"{name}: ")}]
     return [
-        {"pointer": fault.pointer.removeprefix(file).removeprefix(": "), "detail": fault.message}
+        {"pointer": fault.pointer.removeprefix(name).removeprefix(": "), "detail": fault.message}
         for fault in error.faults
     ]
 

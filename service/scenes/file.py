@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +34,6 @@ class SceneFile:
     """
 
     def __init__(self, file: str) -> None:
-        self.file = file
         self.path = Path(file)
         try:
             self.scene: SceneDocument = read_scene(self.path)
@@ -43,6 +41,11 @@ class SceneFile:
             raise self.told(error) from None
         except ValueError as error:  # no name that a file could have
             raise InputError.at("FILE", f"{file!r} cannot be read: {error}") from None
+
+    @property
+    def name(self) -> str:
+        """How messages call the file: without its folder, whose leading / would look like that of a place in it."""
+        return self.path.name
 
     @property
     def files(self) -> SceneFiles:
@@ -62,7 +65,7 @@ class SceneFile:
         except InputError as error:
             raise self.told(error) from None
         except NotSupportedError as error:
-            raise NotSupportedError(f"{self.file}: {error}") from None
+            raise NotSupportedError(f"{self.name}: {error}") from None
 
     def with_assets(self, assets: Path) -> dict[str, Any]:
         """Return the scene as a mapping that names assets only, having put the files that it names among them.
@@ -100,7 +103,6 @@ class SceneFile:
 
     def told(self, error: InputError) -> InputError:
         """Return an error about the scene as one that names the file first."""
-        return InputError(self._named(error.faults))
-
-    def _named(self, faults: Iterable[Fault]) -> list[Fault]:
-        return [Fault(f"{self.file}: {f.pointer}" if f.pointer else self.file, f.message) for f in faults]
+        return InputError(
+            Fault(f"{self.name}: {f.pointer}" if f.pointer else self.name, f.message) for f in error.faults
+        )

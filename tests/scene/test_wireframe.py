@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
 
 from crystal_core.geometry.polyhedron import ConvexPolyhedron
 from crystal_core.optics.indicatrix import BiaxialIndicatrix
@@ -151,35 +152,38 @@ def test_a_sphere_shows_its_outline() -> None:
     assert count(wireframe(staged), "back") == 0
 
 
-def test_a_mesh_hides_itself(tmp_path: Any) -> None:
-    """A U of three boxes, seen through one arm: the inner side of the other is behind it."""
-    profile = np.array(((0, 0), (30, 0), (30, 20), (20, 20), (20, 10), (10, 10), (10, 20), (0, 20)), float)
-    mesh = trimesh.creation.extrude_polygon(_polygon(profile), 10.0)
-    (tmp_path / "u.ply").write_bytes(mesh.export(file_type="ply"))
-    document = parse_scene(
-        {
-            "isogyre": 1,
-            "bodies": {"u": {"optics": {"n": 1.5}, "shape": {"mesh": {"file": "u.ply"}}}},
-            "camera": orthographic(eye=(-60, 0.001, 0.001), height=60),
-        },
-        paths=True,
-    )
-    svg = wireframe(stage_scene(document, SceneFiles(folder=tmp_path)))
-    # Along +x the drawing is a rectangle of 20 × 10; the notch and the far arm lie behind.
-    solid = np.array([point for line in strokes(svg, "front") for point in line])
+def _u_shape() -> str:
+    """Return a U, 30 × 20 mm in x and y, its arms and its base 10 mm thick, 10 mm along z, as OBJ."""
+    ring = [(0, 0), (30, 0), (30, 20), (20, 20), (20, 10), (10, 10), (10, 20), (0, 20)]
+    inside = [(0, 5, 6), (0, 6, 7), (0, 4, 5), (0, 1, 4), (1, 3, 4), (1, 2, 3)]
+    lines = [f"v {x} {y} {z}" for z in (0, 10) for x, y in ring]
+    lines += [f"f {c + 1} {b + 1} {a + 1}" for a, b, c in inside] + [f"f {a + 9} {b + 9} {c + 9}" for a, b, c in inside]
+    for i in range(8):
+        j = (i + 1) % 8
+        lines += [f"f {i + 1} {j + 1} {j + 9}", f"f {i + 1} {j + 9} {i + 9}"]
+    return "\n".join(lines) + "\n"
+
+
+def test_a_mesh_hides_itself(tmp_path: Path) -> None:
+    """Seen along the base of a U, its notch and its far arm stand behind the near arm."""
+    (tmp_path / "u.obj").write_text(_u_shape(), encoding="utf-8")
+
+    def drawn(eye: tuple[float, float, float]) -> str:
+        body = {"optics": {"n": 1.5}, "shape": {"mesh": {"file": "u.obj"}}}
+        document = parse_scene({"isogyre": 1, "bodies": {"u": body}, "camera": orthographic(60, eye)}, paths=True)
+        return wireframe(stage_scene(document, SceneFiles(folder=tmp_path)))
+
+    along = drawn((-60, 0, 0))
+    solid = np.array([point for line in strokes(along, "front") for point in line])
     assert np.ptp(solid, axis=0) == pytest.approx([240, 120], abs=0.5)
-    inner = [
-        point
-        for line in strokes(svg, "front")
-        for point in line
-        if abs(point[0] - 360) < 60 and point[1] not in (300, 420)
-    ]
-    assert [point for point in inner if 302 < point[1] < 418] == []
-
-
-def _polygon(points: np.ndarray) -> Any:
-    shapely = pytest.importorskip("shapely.geometry")
-    return shapely.Polygon(points)
+    low, high = solid.min(axis=0) + 3.0, solid.max(axis=0) - 3.0
+    pairs = np.array([pair for line in strokes(along, "front") for pair in pairwise(line)])
+    middles = pairs.mean(axis=1)
+    assert not np.any(np.all((middles > low) & (middles < high), axis=1))  # the edges of the notch cross the rectangle
+    # From above along y they are: four edges across the drawing, those of the notch and the sides.
+    across = drawn((0, 60, 0))
+    solid = np.array([point for line in strokes(across, "front") for point in line])
+    assert sorted(set(solid[:, 0].round(0))) == [180, 300, 420, 540]
 
 
 def test_axes_and_optic_axes_are_named() -> None:
@@ -320,7 +324,7 @@ def test_a_camera_among_the_bodies_sees_what_is_before_it() -> None:
     bodies = {"before": box(4, 4, 4, position_mm=[0, 30, 0]), "behind": box(4, 4, 4, position_mm=[0, -30, 0])}
     room = {"walls": {"reflectance": 0.8, "shape": {"room": {"size_mm": [90, 90, 90]}}}}
     camera = {"perspective": {"eye_mm": [0, 0, 0], "target_mm": [0, 1, 0], "vfov_deg": 100}}
-    svg = wireframe(scene(bodies, surfaces=room, camera=camera))
+    svg = wireframe(scene(bodies, surfaces=room, camera=camera, lights={"sky": {"sky": {}}}))
     points = np.array([point for line in strokes(svg, "front") for point in line])
     assert np.abs(points - 360.0).max() < 360.0 * (2.0 / 28.0) / np.tan(np.deg2rad(50.0)) + 0.1
     assert "behind" not in texts(svg)

@@ -33,6 +33,10 @@ SAMPLED = 6.0
 """Length of the pieces, in units of the sheet, in which a line of a mesh is looked at for being hidden by the mesh."""
 
 
+OFF = 1e-5
+"""How far off a mesh, in its sizes, a line of sight starts: what it meets then is not the edge that it starts from."""
+
+
 @dataclass(frozen=True)
 class Hider:
     """A body as something to stand behind; a curved one or a mesh as the convex hull of its corners.
@@ -117,9 +121,10 @@ def behind_itself(mesh: Mesh, lens: Lens, start: Real, end: Real) -> list[tuple[
     count = int(np.clip(length / SAMPLED, 1, 40))
     steps = np.linspace(0.0, 1.0, count + 1)
     middles = start + 0.5 * (steps[:-1] + steps[1:])[:, None] * (end - start)
-    far = mesh.entry(middles.T, lens.towards_eye(middles).T)[0]
-    limit = np.linalg.norm(lens.eye - middles, axis=1) if lens.is_pinhole else np.inf
-    behind = (far > SHRUNK * mesh.tree.size) & (far < limit)
+    sight = lens.towards_eye(middles)
+    off = middles + OFF * mesh.tree.size * sight  # off the surface, to the side on which the eye is
+    limit = np.linalg.norm(lens.eye - off, axis=1) if lens.is_pinhole else np.inf
+    behind = np.minimum(mesh.entry(off.T, sight.T)[0], mesh.exit(off.T, sight.T)[0]) < limit
     ends = [0, *(int(i) + 1 for i in np.flatnonzero(behind[1:] != behind[:-1])), count]
     return [
         (start + steps[a] * (end - start), start + steps[b] * (end - start), bool(behind[a]))
