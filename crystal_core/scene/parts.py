@@ -145,7 +145,8 @@ class Part(BaseModel):
         known = list(cls.model_fields)
         if not isinstance(key, str):
             return f"unknown key {key!r}: keys are text (put it in quotes)"
-        near = difflib.get_close_matches(key, known, 1, 0.75)
+        stem = key.rsplit("_", 1)[0]  # the unit is missing, or another
+        near = [name for name in known if name.startswith(f"{stem}_")] or difflib.get_close_matches(key, known, 1, 0.75)
         return f"unknown key; did you mean {near[0]}?" if near else f"unknown key; the keys are {', '.join(known)}"
 
 

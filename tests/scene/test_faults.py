@@ -162,6 +162,20 @@ def test_the_same_thing_is_moved_once() -> None:
     assert told == {"/motion/moves/1/turn": "the same is said by /motion/moves/0"}
 
 
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("size", "did you mean size_mm?"),
+        ("size_cm", "did you mean size_mm?"),
+        ("sise_mm", "did you mean size_mm?"),
+        ("colour", "the keys are size_mm, thickness_um"),
+    ],
+)
+def test_an_unknown_key_is_told_what_may_be_meant(key: str, words: str) -> None:
+    plate = {"optics": {"n": 1.5}, "shape": {"plate": {"thickness_um": 1, key: 1}}}
+    assert faults(bodies(a=plate)) == {f"/bodies/a/shape/plate/{key}": f"unknown key; {words}"}
+
+
 def test_keys_are_text() -> None:
     assert faults({"isogyre": 1, "bodies": {True: CALCITE}}) == {"/bodies": "the key True is no text: put it in quotes"}
 
