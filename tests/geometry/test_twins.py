@@ -196,16 +196,15 @@ def test_half_a_turn_and_reflection_are_one_law_with_a_centre() -> None:
     assert min(np.abs(rotations[0] @ operation - rotations[1]).max() for operation in symmetry) < 1e-12
 
 
-@pytest.mark.parametrize(("law", "plane"), [("swallowtail", (1, 0, -1)), ("Montmartre (butterfly)", (1, 0, 0))])
-def test_gypsum(law: str, plane: tuple[int, int, int]) -> None:
-    pair = specimen_twin(minerals_db.mineral("gypsum"), law, None, SIZE_MM)
-    assert pair.composition_hkl == plane
+def test_gypsum_swallowtail() -> None:
+    """The plate of b, m and l: twinned on (100) of the classical axes, it has a notch at one end and a point below."""
+    pair = specimen_twin(minerals_db.mineral("gypsum"), "swallowtail", "rhombic plate", SIZE_MM)
     check_contact(pair)
+    assert pair.composition_hkl == (1, 0, -1)
     np.testing.assert_allclose(pair.individuals[1].rotation @ (0, 1, 0), (0, -1, 0), atol=1e-12)
-    # Re-entrant at one end: the pair is not convex.
     both = np.concatenate([individual.solid.body.vertices for individual in pair.individuals])
     volume = sum(individual.solid.body.volume_mm3 for individual in pair.individuals)
-    assert ConvexHull(both).volume > 1.003 * volume
+    assert ConvexHull(both).volume > 1.1 * volume
 
 
 def test_polar_crystals_turn_without_a_change_of_hand() -> None:
