@@ -197,7 +197,8 @@ class ConvexPolyhedron:
         for index, (n, offset) in enumerate(zip(self.normals, self.offsets, strict=True)):
             speed = n[0] * direction[0] + n[1] * direction[1] + n[2] * direction[2]
             gap = offset - (n[0] * point[0] + n[1] * point[1] + n[2] * point[2])
-            with np.errstate(divide="ignore", invalid="ignore"):  # a line along a face: ±inf, or NaN on its plane
+            # A line along a face: ±inf, or NaN on its plane.
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 distance = gap / speed
             later = (speed < 0.0) & (distance > enters)
             np.copyto(enters, distance, where=later)

@@ -4,16 +4,13 @@ import numpy as np
 import pytest
 
 from crystal_core.errors import InputError
-from crystal_core.geometry import ConvexPolyhedron, block, rhombohedron
-from crystal_core.geometry.cuts import rotation_about_z
-from crystal_core.geometry.lattice import direct_basis, face_normal
+from crystal_core.geometry import ConvexPolyhedron
+from crystal_core.geometry.boxes import box
 from crystal_core.geometry.visibility import EmbreeFinder, NumpyFinder
+from crystal_core.scene.specimen import cleavage_body
+from minerals_db import mineral
 
-CALCITE = direct_basis((4.99026, 4.99026, 17.0684), (90.0, 90.0, 120.0))
-
-
-def _pole_deg() -> float:
-    return float(np.rad2deg(np.arccos(face_normal(CALCITE, (1, 0, 4))[2])))
+QUARTER_TURN = np.array(((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
 
 
 def _bodies() -> list[ConvexPolyhedron]:
@@ -21,29 +18,10 @@ def _bodies() -> list[ConvexPolyhedron]:
     sphere = rng.normal(size=(20, 3))
     sphere /= np.linalg.norm(sphere, axis=1, keepdims=True)
     return [
-        block((22.0, 20.0, 14.0)),
-        rhombohedron(_pole_deg(), (20.0, 20.0, 12.0), 30.0)[0],
+        box((22.0, 20.0, 14.0)).body,
+        cleavage_body(mineral("calcite"), (12.0, 20.0, 20.0)).body,
         ConvexPolyhedron.from_half_spaces(sphere, np.full(20, 6.0)),  # tangents of a sphere: no two parallel
     ]
-
-
-def test_calcite_cleavage_angles() -> None:
-    """The rhombohedron's published angle r ∧ r' is 74.9° (105.1° between the faces)."""
-    body, turn = rhombohedron(_pole_deg(), (20.0, 20.0, 20.0), 0.0)
-    between = np.rad2deg(np.arccos(body.normals[:3] @ body.normals[:3].T))
-    assert between[0, 1] == pytest.approx(74.9, abs=0.1)
-    np.testing.assert_allclose(between[~np.eye(3, dtype=bool)], between[0, 1], atol=1e-9)
-    # The axis makes the same angle with all three poles, that of the lattice: about 44.6°.
-    np.testing.assert_allclose(np.rad2deg(np.arccos(body.normals[:3] @ turn[:, 2])), _pole_deg(), atol=1e-9)
-    assert _pole_deg() == pytest.approx(44.6, abs=0.05)
-    np.testing.assert_allclose(body.normals[2], (0, 0, 1))
-
-
-def test_interfacial_angles_of_other_lattices() -> None:
-    quartz = direct_basis((4.9134, 4.9134, 5.4052), (90.0, 90.0, 120.0))
-    m, r, z = (face_normal(quartz, hkl) for hkl in ((1, 0, 0), (1, 0, 1), (0, 1, 1)))
-    assert np.rad2deg(np.arccos(m @ r)) == pytest.approx(38.21, abs=0.05)
-    assert np.rad2deg(np.arccos(r @ z)) == pytest.approx(46.27, abs=0.05)
 
 
 @pytest.mark.parametrize("body", _bodies(), ids=["block", "rhombohedron", "random"])
@@ -59,10 +37,11 @@ def test_closed_and_oriented(body: ConvexPolyhedron) -> None:
 
 
 def test_volumes() -> None:
-    assert block((2.0, 3.0, 4.0)).volume_mm3 == pytest.approx(24.0, rel=1e-12)
-    body, _ = rhombohedron(_pole_deg(), (20.0, 20.0, 12.0), 0.0)
-    n = body.normals[:3]
-    assert body.volume_mm3 == pytest.approx(20 * 20 * 12 / abs(np.linalg.det(n)), rel=1e-12)
+    assert box((2.0, 3.0, 4.0)).body.volume_mm3 == pytest.approx(24.0, rel=1e-12)
+    body = cleavage_body(mineral("calcite"), (12.0, 20.0, 20.0)).body
+    n = np.array([one for k, one in enumerate(body.normals) if all(one @ other > -0.999 for other in body.normals[:k])])
+    assert n.shape == (3, 3)
+    assert body.volume_mm3 == pytest.approx(20 * 20 * 12 / abs(np.linalg.det(n)), rel=1e-9)
 
 
 @pytest.mark.parametrize("body", _bodies(), ids=["block", "rhombohedron", "random"])
@@ -102,7 +81,7 @@ def test_finders_agree(body: ConvexPolyhedron) -> None:
 
 
 def test_transformed() -> None:
-    body = block((2.0, 4.0, 6.0)).transformed(rotation_about_z(90.0), np.array((0.0, 0.0, 3.0)))
+    body = box((2.0, 4.0, 6.0)).body.transformed(QUARTER_TURN, np.array((0.0, 0.0, 3.0)))
     np.testing.assert_allclose(body.vertices.min(axis=0), (-2.0, -1.0, 0.0), atol=1e-12)
     assert ((body.vertices @ body.normals.T) <= body.offsets + 1e-12).all()
 
@@ -118,3 +97,14 @@ def test_transformed() -> None:
 def test_faces_that_do_not_close_are_refused(normals: np.ndarray, offsets: tuple[float, ...]) -> None:
     with pytest.raises(InputError, match="/shape"):
         ConvexPolyhedron.from_half_spaces(normals, np.array(offsets, float))
+
+
+def test_lines_all_but_along_a_face() -> None:
+    """The smallest speeds there are: the crossing is infinitely far away, and nobody is warned."""
+    body = block((2.0, 2.0, 2.0))
+    ahead = np.array(((1.0, 1.0, 1.0), (5e-324, 1e-310, 0.0), (0.0, 0.0, 0.0)))
+    enters, leaves, entry, exit_ = body.span(np.zeros((3, 3)), ahead)
+    np.testing.assert_array_equal(enters, -1.0)
+    np.testing.assert_array_equal(leaves, 1.0)
+    assert (body.normals[entry, 0] == -1.0).all()
+    assert (body.normals[exit_, 0] == 1.0).all()
