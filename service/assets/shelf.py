@@ -148,7 +148,7 @@ class AssetShelf:
             raise ShelfBusyError("Other files are being read")
         try:
             done = subprocess.run(
-                [sys.executable, "-m", "service.assets.checker", suffix],
+                [sys.executable, "-P", "-m", "service.assets.checker", suffix],
                 input=data,
                 capture_output=True,
                 timeout=PATIENCE_S,

@@ -29,6 +29,9 @@ LIGHT = Style("light", 0.9)
 CAMERA = Style("camera", 0.9, FAINT)
 
 DISC_POINTS = 72
+ARROW = 36.0
+"""Length of the arrows of an area light, in units of the sheet."""
+
 RIM = 14.0
 """How far from the rim of the sheet an arrow ends that tells where something outside of it is."""
 
@@ -52,8 +55,7 @@ def draw_surface(paper: Paper, lens: Lens, surface: StagedSurface, hiders: Seque
     if surface.surface.shape.room is not None:
         return
     middle = _spot(lens, surface.plane.centre)
-    shown = (spot for point in ring if (spot := _spot(lens, point)) is not None and paper.holds(spot))
-    corner = next(shown, None)
+    corner = _shown(paper, lens, ring)
     if corner is not None:
         away = None if middle is None else _unit(corner - middle)
         paper.label(surface.name, corner, size=11.0, colour=FAINT, away=away)
@@ -74,8 +76,10 @@ def draw_sheet(paper: Paper, lens: Lens, sheet: StagedSheet, hiders: Sequence[Hi
         way = np.cos(turned) * plane.frame[:, 0] + np.sin(turned) * plane.frame[:, 1]
         half = 0.42 * min(plane.width_mm, plane.height_mm)
         _arrow(paper, lens, VIBRATION, plane.centre - half * way, plane.centre + half * way, double=True)
-    spot = _spot(lens, outline(plane)[0])
     middle = _spot(lens, plane.centre)
+    spot = _shown(paper, lens, outline(plane))
+    if spot is None:
+        spot = middle
     if spot is not None:
         paper.label(text, spot, away=None if middle is None else _unit(spot - middle))
 
@@ -96,9 +100,10 @@ def draw_light(paper: Paper, lens: Lens, light: StagedLight, scene: StagedDocume
     centre, way = light.plane.centre, light.plane.normal
     if light.kind == "area":
         half = 0.35 * min(light.plane.width_mm, light.plane.height_mm)
+        length = ARROW / lens.units_per_mm(centre)
         for side in (-1.0, 0.0, 1.0):
             start = centre + side * half * light.plane.frame[:, 0]
-            _arrow(paper, lens, LIGHT, start, start + 1.2 * half * way)
+            _arrow(paper, lens, LIGHT, start, start + length * way)
         _place_or_point_to(paper, lens, centre, name, middle, star=False)
         return
     far = _reach(scene, centre, way)
@@ -164,6 +169,12 @@ def _spot(lens: Lens, point: Real) -> Real | None:
     if lens.before_eye(point, point) is None:
         return None
     return np.asarray(lens.project(point[None])[0])
+
+
+def _shown(paper: Paper, lens: Lens, points: Real) -> Real | None:
+    """Return where the first of the points that can be seen stands on the sheet, None if none can."""
+    spots = (_spot(lens, point) for point in points)
+    return next((spot for spot in spots if spot is not None and paper.holds(spot)), None)
 
 
 def _place_or_point_to(paper: Paper, lens: Lens, point: Real, name: str, middle: Real, *, star: bool) -> None:
