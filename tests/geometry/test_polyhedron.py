@@ -101,7 +101,7 @@ def test_faces_that_do_not_close_are_refused(normals: np.ndarray, offsets: tuple
 
 def test_lines_all_but_along_a_face() -> None:
     """The smallest speeds there are: the crossing is infinitely far away, and nobody is warned."""
-    body = block((2.0, 2.0, 2.0))
+    body = box((2.0, 2.0, 2.0)).body
     ahead = np.array(((1.0, 1.0, 1.0), (5e-324, 1e-310, 0.0), (0.0, 0.0, 0.0)))
     enters, leaves, entry, exit_ = body.span(np.zeros((3, 3)), ahead)
     np.testing.assert_array_equal(enters, -1.0)
