@@ -16,8 +16,7 @@ from drawing import AXIS, CRYSTAL, EXTRAORDINARY, INK, LIGHT, ORDINARY, QUIET, D
 from numpy.typing import ArrayLike, NDArray
 
 import minerals_db
-from crystal_core.geometry import block
-from crystal_core.geometry.cuts import rotation_about_z
+from crystal_core.geometry.boxes import box
 from crystal_core.materials import SODIUM_D_NM, medium
 from crystal_core.optics import Medium, scatter
 
@@ -51,14 +50,15 @@ def _world(drawing: Drawing) -> None:
     drawing.text((40, 50), "World, stage, camera", size=18)
     view = Isometry((262, 385), 8.6, VIEW_AZIMUTH_DEG, 27)
     stage_deg, tilt_deg = 30.0, 44.64
-    turn = rotation_about_z(stage_deg)
+    cos, sin = np.cos(np.deg2rad(stage_deg)), np.sin(np.deg2rad(stage_deg))
+    turn = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)))
     page = np.array(((-20, -15, 0), (20, -15, 0), (20, 15, 0), (-20, 15, 0)), float)
     drawing.area(view(page), "#f3f2ec", "#b9b8ae", 1.2)
     for y in (-9, -3, 3, 9):
         drawing.line(view(((-20, y, 0), (20, y, 0))), "#dedcd2", 1)
     drawing.text(view((-19.3, -14.2, 0)), "page, *z* = 0", QUIET, 13)
 
-    body = block((15, 15, 9.5)).transformed(turn, np.array((0, 0, 6.2)))
+    body = box((15, 15, 9.5)).body.transformed(turn, np.array((0, 0, 6.2)))
     azimuth = np.deg2rad(VIEW_AZIMUTH_DEG)
     towards = np.array((np.cos(azimuth), np.sin(azimuth), 0.5))
     for front in (False, True):

@@ -6,22 +6,20 @@ Everything else is a `NotSupportedError` that names the construct and its place.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from crystal_core.errors import NotSupportedError
 from crystal_core.geometry import ConvexPolyhedron, face_finder
-from crystal_core.optics import Medium
 from crystal_core.scene.lights import Light
 from crystal_core.scene.shapes import Plate, Wedge
 from crystal_core.scene.staged.body import StagedBody
 from crystal_core.scene.staged.flat import StagedSurface
 from crystal_core.scene.staged.lamp import StagedLight
-from crystal_core.scene.staged.medium import StagedMedium
 from crystal_core.scene.staged.stage import StagedDocument
-from crystal_core.scene.staging import StagedCamera, StagedPage, StagedScene, StagedSpecimen
+from crystal_core.scene.tabletop import StagedCamera, StagedPage, StagedScene, StagedSpecimen
 from crystal_core.scene.texture import Texture
 
 __all__ = ["drawable"]
@@ -38,25 +36,11 @@ SAME_PLANE_MM = 1.0
 THIN_UM = 1000.0
 """Plates and wedges thinner than this are about interference, which the renderer does not know yet."""
 
+ABOVE_MM = 1e5
+"""Height of the light that stands for none: above all bodies."""
+
 PLAIN_MM = 64.0
 """Width of the page that stands for a table alone."""
-
-
-@dataclass(frozen=True)
-class FilledSpecimen(StagedSpecimen):
-    """A specimen whose medium is that of a staged scene: concentrations, and dispersion on or off."""
-
-    filling: StagedMedium
-
-    def indices(self, wavelength_nm: ArrayLike) -> tuple[Real, ...]:
-        """Return the principal indices at the wavelengths, shape of the wavelengths."""
-        wavelengths = np.asarray(wavelength_nm, np.float64)
-        found = self.filling.at(wavelengths.reshape(-1)).indices
-        return tuple(np.broadcast_to(n, wavelengths.size).reshape(wavelengths.shape) for n in found)
-
-    def medium(self, wavelength_nm: ArrayLike) -> Medium:
-        """Return the crystal's medium at the wavelengths, absorption included; optical activity is left out."""
-        return self.filling.at(wavelength_nm).inactive()
 
 
 def drawable(scene: StagedDocument) -> StagedScene:
@@ -78,14 +62,15 @@ def drawable(scene: StagedDocument) -> StagedScene:
     ground = under.plane
     # The renderer's page lies in z = 0, centred on the origin, x to its right.
     rotation, shift = ground.frame.T, -ground.frame.T @ ground.centre
-    light = rotation @ lamp.place + shift
+    # Under a sky alone the light's place plays no part.
+    light = np.array((0.0, 0.0, ABOVE_MM)) if lamp is None else rotation @ lamp.place + shift
     solid = shape.transformed(rotation, shift)
     filling = scene.media[body.medium]
     filling = replace(filling, rotation=rotation @ filling.rotation)
     eye = rotation @ camera.eye + shift
     if eye[2] <= 0:
         raise _refused(camera.pointer, "a camera below the page cannot be drawn")
-    if light[2] <= solid.vertices[:, 2].max():
+    if lamp is not None and light[2] <= solid.vertices[:, 2].max():
         raise _refused(
             f"{lamp.pointer}/point/position_mm", "a light that is not higher than the body cannot be drawn yet"
         )
@@ -97,10 +82,8 @@ def drawable(scene: StagedDocument) -> StagedScene:
     exposure = EXPOSURE * (1.0 if analyser is None else 2.0)
     if scene.document.render.exposure is not None:
         exposure = scene.document.render.exposure * (lamp_lx + sky_lx) / 1000.0
-    mineral = filling.mineral
-    assert mineral is not None
     return StagedScene(
-        FilledSpecimen(mineral, solid, face_finder(solid), filling.rotation, filling),
+        StagedSpecimen(solid, face_finder(solid), filling),
         _page(page, table),
         light,
         sky_lx / (lamp_lx + sky_lx),
@@ -128,8 +111,6 @@ def _body(scene: StagedDocument) -> tuple[StagedBody, ConvexPolyhedron]:
     if thin is not None and scene.document.render.interference and _thickest(thin) < THIN_UM:
         reason = "interference in thin bodies cannot be drawn yet; without it: /render/interference: false"
         raise _refused(f"{body.pointer}/shape/{written.shape.kind}", reason)
-    if written.optics is not None:
-        raise _refused(f"{body.pointer}/optics", "only minerals and glasses of the database can be drawn yet")
     around = scene.document.surroundings
     if around.optics is None or around.optics.n != 1.0:
         raise _refused("/surroundings", "only surroundings of air (n: 1) can be drawn yet")
@@ -164,7 +145,7 @@ def _ground(scene: StagedDocument) -> tuple[StagedSurface | None, StagedSurface 
     return page, table
 
 
-def _lights(scene: StagedDocument) -> tuple[StagedLight, StagedLight | None]:
+def _lights(scene: StagedDocument) -> tuple[StagedLight | None, StagedLight | None]:
     for light in scene.lights:
         if light.kind in {"beam", "area"}:
             raise _refused(f"{light.pointer}/{light.kind}", f"light of the kind {light.kind} cannot be drawn yet")
@@ -174,21 +155,21 @@ def _lights(scene: StagedDocument) -> tuple[StagedLight, StagedLight | None]:
             raise _refused(f"{light.pointer}/polarization", "only unpolarized light can be drawn yet")
     lamps = [light for light in scene.lights if light.kind == "point"]
     skies = [light for light in scene.lights if light.kind == "sky"]
-    if not lamps:
-        raise _refused("/lights", "a scene without a point light cannot be drawn yet")
     for extra in (*lamps[1:], *skies[1:]):
         raise _refused(extra.pointer, "only one point light and one sky can be drawn yet")
-    return lamps[0], next(iter(skies), None)
+    return next(iter(lamps), None), next(iter(skies), None)
 
 
-def _illuminances(lamp: StagedLight, light: Real, sky: StagedLight | None) -> tuple[float, float]:
+def _illuminances(lamp: StagedLight | None, light: Real, sky: StagedLight | None) -> tuple[float, float]:
     """Return the illuminance of the page's centre by the lamp, which stands at `light` from there, and by the sky."""
+    sky_lx = 0.0 if sky is None or sky.light.sky is None else sky.light.sky.illuminance_lx
+    if lamp is None:
+        return 0.0, sky_lx
     source: Light = lamp.light
     assert source.point is not None
     written = np.asarray(source.point.position_mm)
     candela_mm2 = source.point.illuminance_lx * float(written @ written)
-    lamp_lx = candela_mm2 * float(light[2]) / float(light @ light) ** 1.5
-    return lamp_lx, 0.0 if sky is None or sky.light.sky is None else sky.light.sky.illuminance_lx
+    return candela_mm2 * float(light[2]) / float(light @ light) ** 1.5, sky_lx
 
 
 def _page(page: StagedSurface | None, table: StagedSurface | None) -> StagedPage:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
-from crystal_core.scene import Scene, StagedScene
+from crystal_core.scene import SceneDocument, StagedScene
 
 __all__ = ["Demonstration", "Parameters"]
 
@@ -28,8 +28,14 @@ class Parameters(BaseModel, ABC):
     """Where a fault of the scene, by its JSON pointer, comes from: the name of a parameter."""
 
     @abstractmethod
-    def scene(self) -> Scene:
-        """Return the scene, its specimen at stage angle 0."""
+    def document(self, frames: int = 1) -> SceneDocument:
+        """Return the scene in the scene language, with the motion of as many frames.
+
+        Raises
+        ------
+        InputError
+            The parameters make no scene; the pointers are those of the scene.
+        """
 
     @abstractmethod
     def angle_deg(self, index: int, frames: int) -> float:

@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal
 import pydantic
 from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny
 
-from crystal_core.errors import Fault, InputError
-from crystal_core.scene import Scene, StagedScene, stage
+from crystal_core.errors import Fault, InputError, NotSupportedError
+from crystal_core.scene import SceneFiles, StagedDocument, StagedScene, drawable, stage_scene
 from crystal_core.sequence.catalogue import demonstrations
 from crystal_core.sequence.demonstration import Parameters
 from crystal_core.sequence.request import MAX_FRAMES, MAX_SEED, MAX_SIDE, MIN_SIDE, RenderRequest, faults_of
@@ -20,7 +20,7 @@ __all__ = ["DemonstrationRequest", "read_demonstration"]
 
 PixelCount = Annotated[int, Field(ge=MIN_SIDE, le=MAX_SIDE, strict=True)]
 
-_PLAIN = {"texture": "digits", "marks_mm": ()}
+_PLAIN = {"texture": "digits", "marks": ()}
 
 
 class _Envelope(BaseModel):
@@ -61,24 +61,20 @@ class DemonstrationRequest(RenderRequest):
 
     def staged(self, index: int, assets: Path | None) -> StagedScene:
         """Return what a frame shows; see `RenderRequest.staged`."""
-        return _staged(self.parameters.scene(), assets).turned(self.angle_deg(index))
+        return drawable(_staged(self, assets).at(index))
 
     def described(self) -> dict[str, Any]:
         """Return what a manifest says of the scene; see `RenderRequest.described`."""
-        scene = self.parameters.scene()
         # The texture's pixels play no part in the facts; an asset may be gone by the time a manifest is asked for.
-        plain = scene.model_copy(update={"page": scene.page.model_copy(update=_PLAIN)})
+        plain = self.parameters.model_copy(update=_PLAIN)
+        scene = drawable(stage_scene(plain.document()))
+        camera = plain.document().camera.perspective
         return {
             "demonstration": self.demonstration,
             "parameters": self.canonical()["parameters"],
             "exposure": scene.exposure,
-            "camera": {
-                "eye_mm": list(scene.camera.eye_mm),
-                "target_mm": list(scene.camera.target_mm),
-                "up": list(scene.camera.up),
-                "vfov_deg": scene.camera.vfov_deg,
-            },
-            "scene": self.parameters.facts(stage(plain)),
+            "camera": None if camera is None else camera.model_dump(mode="json"),
+            "scene": self.parameters.facts(scene),
         }
 
 
@@ -121,10 +117,7 @@ def read_demonstration(obj: Mapping[str, object], *, staging: bool, assets: Path
             faulty = {detail["loc"][0] for detail in error.errors(include_url=False)}
             parameters = model.model_validate({key: value for key, value in raw.items() if key not in faulty})
         if staging:
-            try:
-                stage(parameters.scene(), assets)
-            except InputError as error:
-                faults += [_of_parameter(fault, parameters) for fault in error.faults]
+            faults += _faults_of_scene(parameters, assets)
     if faults:
         raise InputError(faults)
     assert envelope is not None
@@ -133,9 +126,21 @@ def read_demonstration(obj: Mapping[str, object], *, staging: bool, assets: Path
 
 
 @lru_cache(maxsize=2)
-def _staged(scene: Scene, assets: Path | None) -> StagedScene:
+def _staged(request: DemonstrationRequest, assets: Path | None) -> StagedDocument:
     """Stage what all frames share, once per process."""
-    return stage(scene, assets)
+    return stage_scene(request.parameters.document(request.frames), SceneFiles(assets=assets))
+
+
+def _faults_of_scene(parameters: Parameters, assets: Path | None) -> list[Fault]:
+    """Return what is wrong with the scene that parameters make, by the parameters that it comes from."""
+    try:
+        drawable(stage_scene(parameters.document(), SceneFiles(assets=assets)))
+    except InputError as error:
+        return [_of_parameter(fault, parameters) for fault in error.faults]
+    except NotSupportedError as error:
+        pointer, _, reason = str(error).partition(": ")
+        return [_of_parameter(Fault(pointer, reason), parameters)]
+    return []
 
 
 def _of_parameter(fault: Fault, parameters: Parameters) -> Fault:

@@ -8,9 +8,10 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
+import minerals_db
+from crystal_core.errors import InputError
 from crystal_core.materials import SODIUM_D_NM
-from crystal_core.scene import Camera, Page, PointLight, Scene, Shape, Sky, Specimen, StagedScene
-from crystal_core.scene.description import AnalyserAngle
+from crystal_core.scene import SceneDocument, StagedScene, parse_scene
 from crystal_core.sequence.demonstration import Demonstration, Parameters
 from minerals_db.quality import colour_quality, dispersion_quality
 
@@ -20,6 +21,11 @@ Side = Annotated[float, Field(ge=0.5, le=100, allow_inf_nan=False)]
 OnPage = Annotated[float, Field(ge=-500, le=500, allow_inf_nan=False)]
 Far = Annotated[float, Field(ge=-5000, le=5000, allow_inf_nan=False)]
 Height = Annotated[float, Field(ge=1, le=5000, allow_inf_nan=False)]
+
+AnalyserAngle = Annotated[float, Field(ge=0, le=180, allow_inf_nan=False)]
+
+TABLE_REFLECTANCE = 0.25
+"""Of the matte grey table that the page lies on."""
 
 SPECIMEN = {"en": "Specimen", "ru": "Образец"}
 PAGE = {"en": "Page", "ru": "Страница"}
@@ -41,14 +47,15 @@ class RotatingCalcite(Parameters):
     """
 
     scene_pointers: ClassVar[Mapping[str, str]] = {
-        "/specimen/mineral": "mineral",
-        "/specimen/shape/cut": "cut",
-        "/page/texture": "texture",
-        "/page/marks_mm": "marks",
-        "/page/mark_diameter_mm": "mark_diameter_mm",
+        "/bodies/crystal/mineral": "mineral",
+        "/bodies/crystal/shape/box": "size_mm",
+        "/bodies/crystal/shape": "cut",
+        "/bodies/crystal": "size_mm",
+        "/surfaces/page/print": "texture",
+        "/surfaces/page/marks_mm": "marks",
+        "/surfaces/page/mark_diameter_mm": "mark_diameter_mm",
         "/camera": "camera_distance_mm",
-        "/light": "light_position_mm",
-        "/shape": "size_mm",
+        "/lights": "light_position_mm",
     }
 
     mineral: Annotated[str, Field(min_length=1, max_length=64)] = Field(
@@ -177,40 +184,92 @@ class RotatingCalcite(Parameters):
         json_schema_extra=_extra("Share of sky light", "Доля рассеянного света", LIGHT),
     )
 
-    def scene(self) -> Scene:
-        """Return the scene, its specimen at stage angle 0."""
+    def document(self, frames: int = 1) -> SceneDocument:
+        """Return the scene in the scene language, with the motion of as many frames.
+
+        Raises
+        ------
+        InputError
+            An unknown mineral, or a cleavage that it does not have; the pointers are those of the scene.
+        """
         tilt = np.deg2rad(self.camera_tilt_deg)
-        target = (0.0, 0.0, self.gap_mm + 0.5 * self.size_mm[2])
-        reach = self.camera_distance_mm
-        return Scene(
-            specimen=Specimen(
-                mineral=self.mineral,
-                shape=Shape(
-                    cut=self.cut,
-                    size_mm=self.size_mm,
-                    axis_tilt_deg=self.axis_tilt_deg,
-                    axis_azimuth_deg=self.axis_azimuth_deg,
-                ),
-                gap_mm=self.gap_mm,
-            ),
-            page=Page(
-                texture=self.texture,
-                width_mm=self.page_width_mm,
-                marks_mm=self.marks,
-                mark_diameter_mm=self.mark_diameter_mm,
-            ),
-            light=PointLight(position_mm=self.light_position_mm),
-            sky=Sky(fraction=self.sky_fraction),
-            camera=Camera(
-                eye_mm=(0.0, -reach * float(np.sin(tilt)), target[2] + reach * float(np.cos(tilt))),
-                target_mm=target,
-                up=(0.0, float(np.cos(tilt)), float(np.sin(tilt))),
-                vfov_deg=self.vfov_deg,
-                analyser_deg=self.analyser_deg,
-            ),
-            # Half of unpolarized light passes an analyser; the exposure makes up for it, as a camera's would.
-            exposure=0.85 if self.analyser_deg is None else 1.7,
+        middle, reach = self.gap_mm + 0.5 * self.size_mm[2], self.camera_distance_mm
+        eye = [0.0, -reach * float(np.sin(tilt)), middle + reach * float(np.cos(tilt))]
+        page: dict[str, Any] = {"print": self.texture, "shape": {"rectangle": {"width_mm": self.page_width_mm}}}
+        if self.marks:
+            page |= {"marks_mm": self.marks, "mark_diameter_mm": self.mark_diameter_mm}
+        camera: dict[str, Any] = {
+            "perspective": {
+                "eye_mm": eye,
+                "target_mm": [0.0, 0.0, middle],
+                "up": [0.0, float(np.cos(tilt)), float(np.sin(tilt))],
+                "vfov_deg": self.vfov_deg,
+            }
+        }
+        if self.analyser_deg is not None:
+            camera["analyser_deg"] = self.analyser_deg
+        turned = [self.first_angle_deg, self.first_angle_deg + 360.0]
+        return parse_scene(
+            {
+                "isogyre": 1,
+                "title": "Rotating calcite",
+                "bodies": {"crystal": self._crystal() | {"rests_on": "page", "gap_mm": self.gap_mm}},
+                "surfaces": {
+                    "page": page,
+                    "table": {"reflectance": TABLE_REFLECTANCE, "shape": {"endless": {}}},
+                },
+                "lights": self._lights(),
+                "camera": camera,
+                "motion": {"frames": frames, "moves": [{"stage": {"angles_deg": turned}}]},
+            }
         )
+
+    def _crystal(self) -> dict[str, Any]:
+        """Return the body, its crystal as the cut and the axis have it."""
+        if self.cut == "block":
+            tilt, azimuth = np.deg2rad((self.axis_tilt_deg, self.axis_azimuth_deg))
+            lean = np.array(((np.cos(tilt), 0.0, np.sin(tilt)), (0.0, 1.0, 0.0), (-np.sin(tilt), 0.0, np.cos(tilt))))
+            turn = np.array(
+                ((np.cos(azimuth), -np.sin(azimuth), 0.0), (np.sin(azimuth), np.cos(azimuth), 0.0), (0.0, 0.0, 1.0))
+            )
+            return {
+                "mineral": self.mineral,
+                "shape": {"box": {"size_mm": self.size_mm}},
+                "orientation": {"matrix": (turn @ lean).tolist()},
+            }
+        return {
+            "mineral": self.mineral,
+            # The face that lies on the page comes first.
+            "shape": {"cleavage": {"spacing_mm": [self.size_mm[2], self.size_mm[0], self.size_mm[1]]}},
+            "orientation": {"z": {"hkl": self._cleavage()}, "x": {"uvw": [0, 0, 1]}},
+            "turns": [{"about": "z", "angle_deg": self.axis_azimuth_deg}],
+        }
+
+    def _cleavage(self) -> list[int]:
+        """Return the plane of the mineral's rhombohedral cleavage."""
+        mineral = minerals_db.minerals().get(self.mineral)
+        if mineral is None:
+            return [1, 0, 4]  # that the mineral is unknown is told of the scene
+        # A poor cleavage gives no rhombohedron, as every hammer finds with quartz.
+        good = [c.hkl for c in mineral.cleavage if c.quality in ("perfect", "good")]
+        rhombohedra = [hkl for hkl in good if hkl[1] == 0 and hkl[0] != 0 and hkl[2] != 0]
+        if mineral.system != "trigonal" or not rhombohedra:
+            raise InputError.at(
+                "/bodies/crystal/shape", f"{mineral.id} does not cleave into a rhombohedron; cut it as a block"
+            )
+        return list(rhombohedra[0])
+
+    def _lights(self) -> dict[str, Any]:
+        """Return lamp and sky, together 1000 lx at the centre of the bare page."""
+        lights: dict[str, Any] = {}
+        position = np.array(self.light_position_mm)
+        if self.sky_fraction < 1.0:
+            slant = float(position[2] / np.sqrt(position @ position))
+            illuminance = 1000.0 * (1.0 - self.sky_fraction) / slant
+            lights["lamp"] = {"point": {"position_mm": self.light_position_mm, "illuminance_lx": illuminance}}
+        if self.sky_fraction > 0.0:
+            lights["sky"] = {"sky": {"illuminance_lx": 1000.0 * self.sky_fraction}}
+        return lights
 
     def angle_deg(self, index: int, frames: int) -> float:
         """Return the stage angle of a frame; 360° itself is not repeated."""
@@ -218,13 +277,13 @@ class RotatingCalcite(Parameters):
 
     def facts(self, staged: StagedScene) -> dict[str, Any]:
         """Return what repeats the geometry by hand, for the manifest."""
-        body = staged.specimen.body
+        body, mineral = staged.specimen.body, minerals_db.mineral(self.mineral)
         indices = [float(n) for n in staged.specimen.indices(SODIUM_D_NM)]
         facts: dict[str, Any] = {
             "mineral": self.mineral,
             "data_quality": {
-                "dispersion": dispersion_quality(staged.specimen.mineral),
-                "colour": colour_quality(staged.specimen.mineral),
+                "dispersion": dispersion_quality(mineral),
+                "colour": colour_quality(mineral),
             },
             "cut": self.cut,
             "z0_mm": float(body.vertices[:, 2].min()),

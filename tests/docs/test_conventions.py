@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from crystal_core.geometry.lattice import direct_basis, face_normal
 from crystal_core.optics import Coherency, Medium, Scattering, Wave, scatter, transverse_frame
 from crystal_core.render import QUALITIES
-from crystal_core.scene import stage
 from crystal_core.sequence import RenderRequest, frame_angle_deg, manifest, parse_request, render_tile
 from tests.docs.blocks import ROOT
 from tests.reference.block_trace import MODES, ModeName, find_image
@@ -193,19 +192,19 @@ def test_the_stage_turns_counter_clockwise_and_does_not_repeat_360() -> None:
     request = asked(axis_tilt_deg=90, axis_azimuth_deg=10, first_angle_deg=20)
     angles = [frame_angle_deg(request, frame) for frame in range(8)]
     np.testing.assert_allclose(angles, 20.0 + 45.0 * np.arange(8))
-    axis = stage(request.parameters.scene()).turned(angles[1]).specimen.axis
+    axis = request.staged(1, None).specimen.axis
     np.testing.assert_allclose(axis, (np.cos(np.deg2rad(75.0)), np.sin(np.deg2rad(75.0)), 0.0), atol=1e-15)
 
 
 def test_cleavage_rhombs_lean_towards_x() -> None:
-    specimen = stage(asked(cut="cleavage").parameters.scene()).specimen
+    specimen = asked(cut="cleavage").staged(0, None).specimen
     assert np.rad2deg(np.arctan2(specimen.axis[0], specimen.axis[2])) == pytest.approx(44.6, abs=0.1)
     assert specimen.axis[1] == pytest.approx(0.0, abs=1e-15)
     assert specimen.body.vertices[:, 2].min() == pytest.approx(0.02)
 
 
 def test_camera_and_analyser_frames() -> None:
-    camera = stage(asked(camera_tilt_deg=30, analyser_deg=30).parameters.scene()).camera
+    camera = asked(camera_tilt_deg=30, analyser_deg=30).staged(0, None).camera
     assert camera.eye[1] < 0.0 < camera.forward[1]
     np.testing.assert_allclose(camera.right, (1.0, 0.0, 0.0), atol=1e-15)
     np.testing.assert_allclose(camera.up, np.cross(camera.right, camera.forward), atol=1e-15)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from crystal_core.optics import Coherency, Medium, interface_frame
 from crystal_core.optics.eigenwaves import framed
@@ -13,9 +14,10 @@ from crystal_core.render.anisotropic_events import AnisotropicEvents, _shares
 from crystal_core.render.illumination import plate_transmittance
 from crystal_core.render.rays import InsideRays
 from crystal_core.render.tracer import AIR, Arrivals, Roulette
-from crystal_core.scene import Camera, Scene, Shape, Sky, Specimen, StagedScene, stage
-from crystal_core.scene.staging import StagedPage
+from crystal_core.scene import StagedPage, StagedScene
+from crystal_core.scene.staged.medium import StagedMedium
 from crystal_core.scene.texture import Texture
+from tests.render.tabletops import tabletop
 
 SIZE = (48, 48)
 
@@ -23,22 +25,28 @@ SIZE = (48, 48)
 def _uniform(mineral: str, analyser_deg: float | None, tilt_deg: float = 40.0) -> StagedScene:
     """Return a specimen between a sky and a page of the same radiance, 1."""
     tilt = np.deg2rad(tilt_deg)
-    scene = Scene(
-        specimen=Specimen(mineral=mineral, shape=Shape(size_mm=(20.0, 18.0, 12.0), axis_azimuth_deg=20.0)),
-        sky=Sky(fraction=1.0),
-        camera=Camera(
-            eye_mm=(0.0, -150 * np.sin(tilt), 6 + 150 * np.cos(tilt)),
-            target_mm=(0.0, 0.0, 6.0),
-            up=(0.0, 1.0, 0.0),
-            vfov_deg=11.0,
-            analyser_deg=analyser_deg,
-        ),
+    staged = tabletop(
+        mineral,
+        size_mm=(20.0, 18.0, 12.0),
+        azimuth_deg=20.0,
+        stage_deg=25.0,
+        eye_mm=(0.0, -150 * np.sin(tilt), 6 + 150 * np.cos(tilt)),
+        target_mm=(0.0, 0.0, 6.0),
+        vfov_deg=11.0,
+        analyser_deg=analyser_deg,
+        sky_fraction=1.0,
         exposure=1.0,
     )
     page = StagedPage(Texture(np.ones((4, 4, 1), np.float32), 64.0), table_reflectance=1.0)
-    staged = stage(scene)
-    lossless = replace(staged.specimen, mineral=staged.specimen.mineral.model_copy(update={"absorption": None}))
-    return replace(staged, page=page, specimen=lossless).turned(25.0)
+    lossless = replace(staged.specimen, filling=_Lossless(**vars(staged.specimen.filling)))
+    return replace(staged, page=page, specimen=lossless)
+
+
+class _Lossless(StagedMedium):
+    """A medium without its absorption."""
+
+    def at(self, wavelength_nm: ArrayLike) -> Medium:
+        return super().at(wavelength_nm).transparent()
 
 
 @pytest.mark.parametrize("mineral", ["calcite", "rutile", "fluorite", "diamond", "topaz", "aragonite"])

@@ -4,28 +4,37 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
+from crystal_core.optics import Medium
 from crystal_core.render import QUALITIES, Illumination, Quality, TilePixels, render_pixels, tuned_quality
 from crystal_core.render.sampling import passes
-from crystal_core.scene import Camera, PointLight, Scene, Shape, Sky, Specimen, StagedScene, stage
+from crystal_core.scene import StagedScene
+from crystal_core.scene.staged.medium import StagedMedium
+from tests.render.tabletops import tabletop
 
 SIDE = 96
 SIZE = (SIDE, SIDE)
 
 
-def _scene(mineral: str = "calcite", tilt_deg: float = 15.0, **camera: float) -> StagedScene:
+class _AsUniaxial(StagedMedium):
+    """An isotropic medium as a uniaxial one of two equal indices."""
+
+    def at(self, wavelength_nm: ArrayLike) -> Medium:
+        (n,) = super().at(wavelength_nm).indices
+        return Medium.uniaxial(n, n, self.rotation[:, 2])
+
+
+def _scene(mineral: str = "calcite", tilt_deg: float = 15.0, analyser_deg: float | None = None) -> StagedScene:
     tilt = np.deg2rad(tilt_deg)
-    scene = Scene(
-        specimen=Specimen(mineral=mineral, shape=Shape()),
-        camera=Camera(
-            eye_mm=(0.0, -170 * np.sin(tilt), 7 + 170 * np.cos(tilt)),
-            target_mm=(0.0, 0.0, 7.0),
-            up=(0.0, np.cos(tilt), np.sin(tilt)),
-            vfov_deg=16.0,
-            **camera,  # type: ignore[arg-type]
-        ),
+    return tabletop(
+        mineral,
+        stage_deg=30.0,
+        eye_mm=(0.0, -170 * np.sin(tilt), 7 + 170 * np.cos(tilt)),
+        target_mm=(0.0, 0.0, 7.0),
+        vfov_deg=16.0,
+        analyser_deg=analyser_deg,
     )
-    return stage(scene).turned(30.0)
 
 
 def _render(scene: StagedScene, quality: Quality, box: tuple[int, int, int, int], seed: int = 0) -> TilePixels:
@@ -101,13 +110,7 @@ def test_isotropic_rays_agree_with_the_equal_index_limit() -> None:
     box = (38, 40, 70, 60)
     quality = Quality("plain", 0.0, (4,), 4, 9.0, 0.02)
     isotropic = _render(scene, quality, box).pixels.astype(np.float64)
-    as_uniaxial = scene.specimen.mineral.model_copy(
-        update={
-            "optical_class": "uniaxial",
-            "dispersion": dict.fromkeys(("o", "e"), scene.specimen.mineral.dispersion["n"]),
-        }
-    )
-    limit = replace(scene, specimen=replace(scene.specimen, mineral=as_uniaxial))
+    limit = replace(scene, specimen=replace(scene.specimen, filling=_AsUniaxial(**vars(scene.specimen.filling))))
     assert level._events(limit.specimen, np.array((550.0,))).modes == 2
     uniaxial = _render(limit, quality, box).pixels.astype(np.float64)
     assert np.abs(isotropic.mean(axis=(0, 1)) - uniaxial.mean(axis=(0, 1))).max() < 2e-3
@@ -117,9 +120,7 @@ def test_isotropic_rays_agree_with_the_equal_index_limit() -> None:
 def test_point_light_and_sky_on_the_bare_page() -> None:
     """Inverse square and cosine, h/r³, against the closed form; the sky adds its share everywhere."""
     light = (-60.0, 80.0, 200.0)
-    camera = Camera(eye_mm=(0, 0, 300), target_mm=(0, 0, 0), up=(0, 1, 0), vfov_deg=20)
-    lit = PointLight(position_mm=light)
-    scene = stage(Scene(specimen=Specimen(), light=lit, sky=Sky(fraction=0.25), camera=camera))
+    scene = tabletop(light_mm=light, sky_fraction=0.25)
     x, y = np.array((100.0, -80.0, 60.0)), np.array((-90.0, 70.0, 120.0))  # none in the shadow
     r2 = (x - light[0]) ** 2 + (y - light[1]) ** 2 + light[2] ** 2
     centre = light[2] / (light[0] ** 2 + light[1] ** 2 + light[2] ** 2) ** 1.5
@@ -129,9 +130,7 @@ def test_point_light_and_sky_on_the_bare_page() -> None:
 
 def test_shadow_and_light_through_the_block() -> None:
     """Under the block the light is dimmed as by a plate; beside it, away from the light, it is blocked."""
-    camera = Camera(eye_mm=(0, 0, 300), target_mm=(0, 0, 0), up=(0, 1, 0), vfov_deg=20)
-    light = PointLight(position_mm=(-100.0, 0.0, 400.0))
-    scene = stage(Scene(specimen=Specimen(), light=light, sky=Sky(fraction=0.0), camera=camera))
+    scene = tabletop(light_mm=(-100.0, 0.0, 400.0), sky_fraction=0.0)
     illumination = Illumination(scene)
     under, beside, clear = illumination.at(np.array((0.0, 12.5, -13.0)), np.zeros(3))
     assert under == pytest.approx(0.89, abs=0.02)  # 2n/(n²+1) for n about 1.57, slightly less on a slant

@@ -7,8 +7,8 @@ import pytest
 from PIL import Image
 
 from crystal_core.errors import InputError
-from crystal_core.scene import Camera, Page, Scene, Specimen, stage
 from crystal_core.scene.printed_page import printed_digits
+from crystal_core.scene.prints import with_marks
 from crystal_core.scene.texture import MAX_BYTES, Texture, check_texture, decode_texture
 
 
@@ -46,10 +46,8 @@ def test_orientation() -> None:
 
 def test_marks_stand_where_they_were_put() -> None:
     marks = ((3.137, -2.291), (-11.003, 7.717))
-    camera = Camera(eye_mm=(0, 0, 100), target_mm=(0, 0, 0), up=(0, 1, 0), vfov_deg=20)
-    bare = stage(Scene(specimen=Specimen(), camera=camera)).page.texture.texels
-    page = Page(marks_mm=marks, mark_diameter_mm=0.5)
-    texture = stage(Scene(specimen=Specimen(), page=page, camera=camera)).page.texture
+    bare = printed_digits()
+    texture = with_marks(Texture(bare, 64.0), marks, 0.5, "/page")
     rows, columns = np.mgrid[0 : bare.shape[0], 0 : bare.shape[1]] + 0.5
     covered = 1.0 - texture.texels[..., 0] / bare[..., 0]
     for x, y in marks:

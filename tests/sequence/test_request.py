@@ -13,7 +13,7 @@ NAME = "rotating-calcite"
 def test_defaults() -> None:
     request = parse_request({"demonstration": NAME})
     assert (request.frames, request.size, request.quality, request.seed) == (36, (512, 512), "standard", 0)
-    assert request.parameters.scene().specimen.mineral == "calcite"
+    assert request.parameters.document().bodies["crystal"].mineral == "calcite"
     assert pickle.loads(pickle.dumps(request)) == request
     assert parse_request(request.canonical()) == request
 
