@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 import yaml
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
 from crystal_core.scene.bodies import Body
 from crystal_core.scene.cameras import Fitted, ViewCamera
@@ -32,10 +33,17 @@ FileReference = tuple[str, str]
 """JSON pointer of the key, and the name of the file."""
 
 
+def _no_truth(value: object) -> object:
+    """Refuse true, which Python takes for 1."""
+    if isinstance(value, bool):
+        raise PydanticCustomError("scene", "must be 1")
+    return value
+
+
 class SceneDocument(Part):
     """A scene: what is there, who looks at it, and what moves. Make it with `parse_scene` or `read_scene`."""
 
-    isogyre: Literal[1] = Field(description="Version of the language")
+    isogyre: Annotated[Literal[1], BeforeValidator(_no_truth)] = Field(description="Version of the language")
     title: Text | None = None
     description: Text | None = None
     surroundings: Surroundings = Surroundings(optics=Optics(n=1.0))

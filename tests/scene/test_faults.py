@@ -46,6 +46,7 @@ def test_several_faults_are_told_at_once() -> None:
     [
         ({}, "/isogyre", "required"),
         ({"isogyre": 2, "bodies": {"a": CALCITE}}, "/isogyre", "must be 1"),
+        ({"isogyre": True, "bodies": {"a": CALCITE}}, "/isogyre", "must be 1"),
         (scene(), "", "the scene is empty"),
         (scene(bodies={"a": CALCITE}, surfaces={"a": TABLE}), "/surfaces/a", "taken by /bodies/a"),
         (bodies(**{"2a": CALCITE}), "/bodies/2a", "must match"),
