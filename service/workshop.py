@@ -19,6 +19,7 @@ from service.events import Bell
 from service.jobs import Runner
 from service.ledger import Ledger
 from service.problems import ProblemError
+from service.scenes.validation import checked_request
 from service.settings import Settings
 from service.tile_shelf import TileShelf
 from service.warmth import warm_up
@@ -122,7 +123,7 @@ class Workshop:
             isinstance(value, str) and value.startswith("asset:") for value in parameters.values()
         )
         if "scene" in body or names_asset:
-            return self.work_out(sequence.parse_request, body, self.assets.folder)
+            return self.work_out(checked_request, body, self.assets.folder)
         return sequence.parse_request(body, self.assets.folder)
 
     def work_out(self, function: Callable[..., T], *args: object) -> T:

@@ -43,20 +43,20 @@ def render(
         ),
     ] = None,
     frames: Annotated[
-        int | None, typer.Option(help="Frames, 1 to 360 [default: 36, or the scene's own].", metavar="N")
+        int | None, typer.Option(help="Frames, 1 to 360; of a scene its own [default: 36].", metavar="N")
     ] = None,
     size: Annotated[
         str | None,
         typer.Option(
-            help="Width and height in pixels, 16 to 2048 each [default: 512x512, or the scene's own].", metavar="WxH"
+            help="Width and height in pixels, 16 to 2048 each; of a scene its own [default: 512x512].", metavar="WxH"
         ),
     ] = None,
     quality: Annotated[
         str | None,
-        typer.Option(help="draft, standard or fine [default: standard, or the scene's own].", metavar="QUALITY"),
+        typer.Option(help="draft, standard or fine; of a scene its own [default: standard].", metavar="QUALITY"),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Of the random numbers [default: 0, or the scene's own].", metavar="N")
+        int | None, typer.Option(help="Of the random numbers; of a scene its own [default: 0].", metavar="N")
     ] = None,
     workers: Annotated[
         int | None,

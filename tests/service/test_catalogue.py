@@ -28,6 +28,10 @@ def test_openapi_describes_the_interface(client: TestClient) -> None:
         "/v1/minerals/{mineral_id}/habits",
         "/v1/minerals/{mineral_id}/habits/{name}",
         "/v1/demonstrations",
+        "/v1/scenes/validate",
+        "/v1/scenes/schema",
+        "/v1/assets",
+        "/v1/assets/{asset}",
         "/v1/renders",
         "/v1/renders/{render_id}",
         "/v1/renders/{render_id}/events",
@@ -40,8 +44,9 @@ def test_openapi_describes_the_interface(client: TestClient) -> None:
         "/readyz",
     }
     post = document["paths"]["/v1/renders"]["post"]
-    assert post["requestBody"]["content"]["application/json"]["schema"]["required"] == ["demonstration"]
-    assert set(post["responses"]) == {"202", "400", "413", "415", "422"}
+    kinds = post["requestBody"]["content"]["application/json"]["schema"]["oneOf"]
+    assert [kind["required"] for kind in kinds] == [["demonstration"], ["scene"]]
+    assert set(post["responses"]) == {"202", "400", "413", "415", "422", "503"}
     assert list(post["responses"]["422"]["content"]) == ["application/problem+json"]
     assert set(document["components"]["schemas"]["Problem"]["required"]) == {"type", "title", "status", "detail"}
     schema = "#/components/schemas/Problem"

@@ -128,8 +128,8 @@ def test_each_wrong_option_has_its_line(capsys: pytest.CaptureFixture[str]) -> N
     assert run(["render", "rotating-calcite", *arguments]) == 2
     assert [line.split(": ")[1] for line in capsys.readouterr().err.splitlines()] == [
         "--size",
-        "--set texture",
         "--out",
+        "--set texture",
         "--frames",
         "--set colour",
     ]

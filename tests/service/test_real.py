@@ -158,7 +158,7 @@ def test_limits_are_where_they_are_said_to_be(client: TestClient, change: dict[s
 
 def test_the_schema_tells_the_limits_of_the_renderer(client: TestClient) -> None:
     schema = client.get("/openapi.json").json()["paths"]["/v1/renders"]["post"]["requestBody"]
-    properties = schema["content"]["application/json"]["schema"]["properties"]
+    properties = schema["content"]["application/json"]["schema"]["oneOf"][0]["properties"]
     defaults = sequence.parse_request({"demonstration": "rotating-calcite"}).canonical()
     for name in ("frames", "size", "quality", "seed"):
         assert properties[name]["default"] == defaults[name]

@@ -115,7 +115,7 @@ def test_a_request_that_this_version_refuses_fails_with_the_reason(
         raise InputError.at("/parameters/delay_s", "is gone")
 
     with monkeypatch.context() as patch:
-        patch.setattr(sequence, "parse_request", refuse)
+        patch.setattr(sequence, "read_request", refuse)
         with opened(settings) as client:
             job = finish(client, address)
     assert job["status"] == "failed"

@@ -167,6 +167,22 @@ def test_a_scene_that_cannot_be_drawn_is_refused_by_its_place(real: TestClient) 
     assert answer.json()["detail"].startswith("/scene/bodies/ball: ")
 
 
+def test_a_scene_that_takes_too_long_to_look_at_is_refused_with_the_number(real: TestClient) -> None:
+    small = {"mineral": "quartz", "shape": {"sphere": {"diameter_mm": 1}}}
+    bodies = {f"b{i}": {**small, "position_mm": [2 * i, 0, 0]} for i in range(24)}
+    motion = {"frames": 360, "moves": [{"stage": {"angles_deg": [0, 1]}}]}
+    scene = {"isogyre": 1, "bodies": bodies, "motion": motion}
+    for route, body, pointer in (
+        ("/v1/scenes/validate", scene, "/bodies"),
+        ("/v1/renders", {"scene": scene}, "/scene/bodies"),
+    ):
+        answer = real.post(route, json=body)
+        assert answer.status_code == 422
+        (error,) = answer.json()["errors"]
+        assert error["pointer"] == pointer
+        assert "24 bodies in 360 frames cost 207360" in error["detail"]
+
+
 def test_scenes_name_assets(real: TestClient) -> None:
     picture = real.post("/v1/assets?filename=a.png", content=png((40, 20))).json()["asset"]
     mesh = real.post("/v1/assets?filename=a.ply", content=cube("ply", inside_out=True)).json()["asset"]
