@@ -8,12 +8,12 @@ from typing import Any, Literal
 
 import numpy as np
 from PIL import Image
+from scipy.spatial import ConvexHull
 
 from crystal_core.errors import InputError
 from crystal_core.geometry.mesh_contents import SUFFIXES as MESH_SUFFIXES
 from crystal_core.geometry.mesh_contents import mesh_triangles
 from crystal_core.geometry.mesh_file import load_mesh
-from crystal_core.geometry.polyhedron import ConvexPolyhedron
 from crystal_core.scene.texture import decode_texture
 
 __all__ = ["AssetFacts", "read_facts"]
@@ -22,6 +22,9 @@ Kind = Literal["texture", "mesh"]
 
 SIZE_MM = 10.0
 """A mesh is looked at in this size: only the scene that names it says how large it is."""
+
+CONVEX = 1e-6
+"""By what part of its volume the convex hull of a convex body may be larger."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,7 @@ def _mesh(data: bytes, suffix: str) -> AssetFacts:
         "faces": body.face_count,
         "triangles": len(body.triangles[0]),
         "corners": len(body.vertices),
-        "convex": isinstance(body, ConvexPolyhedron),
+        "convex": float(ConvexHull(body.vertices).volume) <= body.volume_mm3 * (1.0 + CONVEX),
         "extent": [float(f"{value:.6g}") for value in extent],
         "filled_fraction": round(float(body.volume_mm3) / largest**3, 4),
     }

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import minerals_db
 from crystal_core.geometry.polyhedron import ConvexPolyhedron
 from crystal_core.optics.indicatrix import BiaxialIndicatrix
 from crystal_core.scene import SceneFiles, StagedDocument, parse_scene, stage_scene
@@ -329,3 +330,19 @@ def test_a_camera_among_the_bodies_sees_what_is_before_it() -> None:
     assert np.abs(points - 360.0).max() < 360.0 * (2.0 / 28.0) / np.tan(np.deg2rad(50.0)) + 0.1
     assert "behind" not in texts(svg)
     assert count(svg, "surface") > 0
+
+
+def test_every_habit_of_the_database_in_one_drawing() -> None:
+    habits = [(mineral.id, habit.name) for mineral in minerals_db.minerals().values() for habit in mineral.habits]
+    bodies = {
+        f"b{i}": {
+            "mineral": mineral,
+            "shape": {"habit": {"name": name, "size_mm": 8}},
+            "position_mm": [10 * (i % 16), 10 * (i // 16), 0],
+        }
+        for i, (mineral, name) in enumerate(habits)
+    }
+    assert len(bodies) > 150
+    svg = wireframe(scene(bodies, camera={"fitted": {"tilt_deg": 40}}))
+    assert len(svg.encode()) < 200_000
+    assert count(svg, "front") > 5 * len(bodies)

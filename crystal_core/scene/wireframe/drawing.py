@@ -133,13 +133,14 @@ def _straight(scene: StagedDocument, view: View) -> Lens:
 
 
 def _others(bodies: Sequence[StagedBody], hiders: Sequence[Hider], number: int) -> list[Hider]:
-    """Return what can hide a body: all others but those that it is inside of, which are looked through."""
+    """Return what can hide a body: others before it, but not those that it is inside of, which are looked through."""
     around = {number}
     host = bodies[number].host
     while host != NOBODY:
         around.add(host)
         host = bodies[host].host
-    return [hider for other, hider in enumerate(hiders) if other not in around]
+    own = hiders[number]
+    return [hider for other, hider in enumerate(hiders) if other not in around and hider.may_hide(own)]
 
 
 def _draw_body(paper: Paper, lens: Lens, body: StagedBody, hiders: Sequence[Hider]) -> None:

@@ -71,6 +71,12 @@ class Hider:
         places = self.lens.project(self.body.vertices)
         return np.concatenate((places.min(axis=0), places.max(axis=0))), float(depth.min())
 
+    def may_hide(self, other: Hider) -> bool:
+        """Tell whether the other body can stand behind this one at all."""
+        (box, nearest), (theirs, _) = self.extent, other.extent
+        farthest = float(self.lens.depth(other.body.vertices).max())
+        return bool(np.all(box[:2] <= theirs[2:]) and np.all(theirs[:2] <= box[2:]) and nearest <= farthest)
+
     def hidden(self, start: Real, end: Real) -> tuple[float, float] | None:
         """Return the stretch t0 … t1 of the segment, 0 at its start and 1 at its end, that stands behind the body."""
         box, nearest = self.extent
