@@ -122,7 +122,7 @@ def _smallest_turn(direction: Real) -> Real:
     """Return the rotation by the smallest angle that takes (0, 0, 1) to a unit vector, (0, 0, −1) by a turn about x."""
     x, y, z = direction
     across = x * x + y * y
-    if across == 0.0:
+    if across < np.finfo(np.float64).tiny:  # (0, 0, ±1) to 1e-154, where 1/across overflows
         return np.diag((1.0, np.sign(z), np.sign(z)))
     # Rodrigues: R = I + [v] + [v]²/(1 + z) with v = (0, 0, 1) × direction; 1/(1 + z) without cancellation near −1.
     share = 1.0 / (1.0 + z) if z > 0.0 else (1.0 - z) / across

@@ -254,7 +254,7 @@ def _etag(kind: str, question: object) -> str:
 
 def _links(mineral: Mineral) -> dict[str, str]:
     address = f"/v1/minerals/{mineral.id}"
-    return {"self": address, "optics": f"{address}/optics"}
+    return {"self": address, "optics": f"{address}/optics", "habits": f"{address}/habits"}
 
 
 def _address(request: Request, **instead: str) -> str:

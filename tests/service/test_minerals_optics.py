@@ -30,7 +30,11 @@ def test_a_mineral_comes_whole_with_sources_and_indices(client: TestClient) -> N
     assert calcite["birefringence"] == pytest.approx(0.172, abs=5e-4)
     assert (calcite["two_v_deg"], calcite["origin"]) == (None, "built-in")
     assert calcite["quality"]["dispersion"] == "published"
-    assert calcite["links"] == {"self": "/v1/minerals/calcite", "optics": "/v1/minerals/calcite/optics"}
+    assert calcite["links"] == {
+        "self": "/v1/minerals/calcite",
+        "optics": "/v1/minerals/calcite/optics",
+        "habits": "/v1/minerals/calcite/habits",
+    }
 
 
 def test_a_biaxial_mineral_is_told_by_its_axes(client: TestClient) -> None:
