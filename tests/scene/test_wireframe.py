@@ -11,8 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, reject, settings
+from hypothesis import strategies as st
 
 import minerals_db
+from crystal_core.errors import InputError, NotSupportedError
 from crystal_core.geometry.polyhedron import ConvexPolyhedron
 from crystal_core.optics.indicatrix import BiaxialIndicatrix
 from crystal_core.scene import SceneFiles, StagedDocument, parse_scene, stage_scene
@@ -21,6 +24,7 @@ from crystal_core.scene.wireframe.directions import indicatrix_section, optic_ax
 from crystal_core.scene.wireframe.edges import body_lines
 from crystal_core.scene.wireframe.hidden import Hider, pieces
 from crystal_core.scene.wireframe.lens import Lens, camera_lens
+from tests.scene.strategies import scenes
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -346,3 +350,17 @@ def test_every_habit_of_the_database_in_one_drawing() -> None:
     svg = wireframe(scene(bodies, camera={"fitted": {"tilt_deg": 40}}))
     assert len(svg.encode()) < 200_000
     assert count(svg, "front") > 5 * len(bodies)
+
+
+@settings(max_examples=40, deadline=None)
+@given(mapping=scenes(), view=st.sampled_from(["camera", "plan", "front", "side"]))
+def test_whatever_can_be_put_together_can_be_drawn(mapping: dict[str, Any], view: Any) -> None:
+    mapping.pop("motion", None)
+    try:
+        staged = stage_scene(parse_scene(mapping))
+    except (InputError, NotSupportedError):
+        reject()
+    svg = wireframe(staged, view, indicatrix=True)
+    for line in [line for style in ("front", "back", "axis", "indicatrix") for line in strokes(svg, style)]:
+        assert np.isfinite(line).all()
+    assert len(svg.encode()) < 200_000

@@ -241,7 +241,8 @@ def _arms(scene: StagedDocument, crystals: Sequence[StagedBody]) -> Iterator[tup
 def _tip(body: StagedBody, way: Real, beyond: float) -> tuple[Real, Real]:
     """Return where a line out of a body's centre comes to its surface, and where it ends beyond it."""
     start = body.solid.body.vertices.mean(axis=0)
-    leaves = float(body.solid.body.exit(start[:, None], way[:, None])[0][0])
+    with np.errstate(over="ignore"):  # a face almost along the line is very far away
+        leaves = float(body.solid.body.exit(start[:, None], way[:, None])[0][0])
     surface = start + (leaves if np.isfinite(leaves) else 0.0) * way
     return surface, surface + beyond * way
 
