@@ -66,9 +66,10 @@ class DemonstrationRequest(RenderRequest):
     def described(self) -> dict[str, Any]:
         """Return what a manifest says of the scene; see `RenderRequest.described`."""
         # The texture's pixels play no part in the facts; an asset may be gone by the time a manifest is asked for.
-        plain = self.parameters.model_copy(update=_PLAIN)
-        scene = drawable(stage_scene(plain.document()))
-        camera = plain.document().camera.perspective
+        document = self.parameters.model_copy(update=_PLAIN).document()
+        # The facts are those of stage angle 0, from which the angles of the frames count.
+        scene = drawable(stage_scene(document.model_copy(update={"motion": None})))
+        camera = document.camera.perspective
         return {
             "demonstration": self.demonstration,
             "parameters": self.canonical()["parameters"],
