@@ -1,13 +1,20 @@
-"""What a command prints on stdout: read by people, by programs, or by nobody any more."""
+"""What a command gives out: on stdout, read by people, by programs, or by nobody any more; or in a file."""
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import os
 import sys
+from pathlib import Path
 
-__all__ = ["print_json", "print_text"]
+from crystal_core.errors import InputError
+
+__all__ = ["print_json", "print_text", "write_file"]
+
+_FAILURES = {errno.ENOSPC, errno.EDQUOT, errno.EIO}
+"""What goes wrong with a disk although the file was well chosen."""
 
 
 def print_json(value: object) -> None:
@@ -36,3 +43,25 @@ def print_text(text: str, end: str = "\n") -> None:
     except BrokenPipeError:
         # Whoever reads has seen enough. The interpreter would complain of what is left when it flushes at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def write_file(out: str, data: bytes, option: str) -> None:
+    """Write a file that an option names, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        At the option: the file cannot be written.
+    OSError
+        The disk fails.
+    """
+    from crystal_core.output.files import write_atomically
+
+    try:
+        write_atomically(Path(out), data)
+    except OSError as error:
+        if error.errno in _FAILURES:
+            raise
+        raise InputError.at(option, f"{out} cannot be written: {error.strerror}") from error
+    except ValueError as error:  # no name that a file could have
+        raise InputError.at(option, f"{out!r} cannot be written: {error}") from None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args
 
@@ -10,7 +9,7 @@ import typer
 
 from crystal_core.errors import InputError, NotSupportedError
 from service.commands.complaint import one_line
-from service.commands.output import print_json, print_text
+from service.commands.output import print_json, print_text, write_file
 
 if TYPE_CHECKING:
     from crystal_core.scene import StagedDocument
@@ -23,8 +22,6 @@ scene = typer.Typer(
 )
 
 _FAULTY = 2
-_FAILURES = {errno.ENOSPC, errno.EDQUOT, errno.EIO}
-"""What goes wrong with a disk although the file was well chosen."""
 
 SceneArgument = Annotated[str, typer.Argument(help="A scene: .yaml, .yml or .json.", metavar="FILE")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
@@ -107,7 +104,7 @@ def show(
     if wireframe is not None:
         from crystal_core.scene.wireframe import wireframe as draw
 
-        _write(wireframe, draw(staged, drawn_from, indicatrix=indicatrix))
+        write_file(wireframe, draw(staged, drawn_from, indicatrix=indicatrix).encode(), "--wireframe")
     if as_json:
         print_json(summary(staged))
     else:
@@ -215,16 +212,3 @@ def _thing_line(thing: dict[str, Any]) -> str:
 
 def _vector(values: list[float]) -> str:
     return f"({', '.join(f'{value:.4g}' for value in values)})"
-
-
-def _write(out: str, svg: str) -> None:
-    from crystal_core.output.files import write_atomically
-
-    try:
-        write_atomically(Path(out), svg.encode())
-    except OSError as error:
-        if error.errno in _FAILURES:
-            raise
-        raise InputError.at("--wireframe", f"{out} cannot be written: {error.strerror}") from error
-    except ValueError as error:  # no name that a file could have
-        raise InputError.at("--wireframe", f"{out!r} cannot be written: {error}") from None

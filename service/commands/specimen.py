@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,7 +9,7 @@ import typer
 
 from crystal_core.errors import Fault, InputError
 from service.commands.complaint import one_line
-from service.commands.output import print_json, print_text
+from service.commands.output import print_json, print_text, write_file
 
 if TYPE_CHECKING:
     from typing import Any
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
 __all__ = ["specimen"]
 
 _OPTIONS = {"": "MINERAL", "/name": "--habit", "/size_mm": "--size"}
-_FAILURES = {errno.ENOSPC, errno.EDQUOT, errno.EIO}
-"""What goes wrong with a disk although the file was well chosen."""
 
 
 def specimen(
@@ -60,7 +57,7 @@ def specimen(
     except InputError as error:
         raise InputError(Fault(_option(fault.pointer), fault.message) for fault in error.faults) from None
     if mesh is not None:
-        _write(mesh, ply(solid, f"{entry.id}, {known.name}, {size_mm:g} mm"))
+        write_file(mesh, ply(solid, f"{entry.id}, {known.name}, {size_mm:g} mm"), "--mesh")
     document = habit_document(entry, known, size_mm, solid)
     if as_json:
         print_json(document)
@@ -119,16 +116,3 @@ def _angles(faces: list[dict[str, Any]], edges: list[dict[str, Any]]) -> list[st
 
 def _indices(hkl: list[int]) -> str:
     return " ".join(str(index) for index in hkl)
-
-
-def _write(out: str, data: bytes) -> None:
-    from crystal_core.output.files import write_atomically
-
-    try:
-        write_atomically(Path(out), data)
-    except OSError as error:
-        if error.errno in _FAILURES:
-            raise
-        raise InputError.at("--mesh", f"{out} cannot be written: {error.strerror}") from error
-    except ValueError as error:  # no name that a file could have
-        raise InputError.at("--mesh", f"{out!r} cannot be written: {error}") from None

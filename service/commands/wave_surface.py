@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import errno
-import os
-import sys
 from pathlib import Path
 from typing import Annotated, Literal, cast
 
 import typer
 
 from crystal_core.errors import InputError
+from service.commands.output import print_text, write_file
 
 __all__ = ["wave_surface"]
-
-_FAILURES = {errno.ENOSPC, errno.EDQUOT, errno.EIO}
-"""What goes wrong with a disk although the file was well chosen."""
 
 
 def wave_surface(
@@ -53,30 +48,8 @@ def wave_surface(
 
     surface = mineral_surface(mineral, wavelength_nm, cast(Literal["index", "ray"], kind), resolution)
     if out is None:
-        _print(encode(surface.document()))
+        print_text(encode(surface.document()))
     elif Path(out).suffix.lower() == ".ply":
-        _write(out, surface.ply())
+        write_file(out, surface.ply(), "--out")
     else:
-        _write(out, f"{encode(surface.document())}\n".encode("ascii"))
-
-
-def _write(out: str, data: bytes) -> None:
-    from crystal_core.output.files import write_atomically
-
-    try:
-        write_atomically(Path(out), data)
-    except OSError as error:
-        if error.errno in _FAILURES:
-            raise
-        raise InputError.at("--out", f"{out} cannot be written: {error.strerror}") from error
-    except ValueError as error:  # no name that a file could have
-        raise InputError.at("--out", f"{out!r} cannot be written: {error}") from None
-
-
-def _print(text: str) -> None:
-    try:
-        print(text)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # Whoever reads has seen enough. The interpreter would complain of what is left when it flushes at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        write_file(out, f"{encode(surface.document())}\n".encode("ascii"), "--out")
