@@ -13,6 +13,7 @@ from crystal_core.scene.staged.flat import Plane, StagedSheet, StagedSurface
 from crystal_core.scene.staged.lamp import StagedLight
 from crystal_core.scene.staged.stage import StagedDocument
 from crystal_core.scene.staged.view import StagedView
+from crystal_core.scene.wireframe.directions import indicatrix_section
 from crystal_core.scene.wireframe.hidden import Hider, pieces
 from crystal_core.scene.wireframe.lens import Lens
 from crystal_core.scene.wireframe.paper import ACCENT, FAINT, INK, Paper, Style
@@ -24,6 +25,7 @@ Real = NDArray[np.float64]
 SURFACE = Style("surface", 0.8, FAINT)
 SHEET = Style("sheet", 1.0)
 VIBRATION = Style("vibration", 1.4, ACCENT)
+PLATE = Style("plate-vibrations", 1.0, ACCENT)
 BEAM = Style("beam", 1.0)
 LIGHT = Style("light", 0.9)
 CAMERA = Style("camera", 0.9, FAINT)
@@ -62,12 +64,13 @@ def draw_surface(paper: Paper, lens: Lens, surface: StagedSurface, hiders: Seque
 
 
 def draw_sheet(paper: Paper, lens: Lens, sheet: StagedSheet, hiders: Sequence[Hider]) -> None:
-    """Draw the outline of a sheet and the direction that makes it what it is."""
+    """Draw the outline of a sheet and what it does to vibrations: what passes, or the slow and the fast one."""
     plane, told = sheet.plane, sheet.sheet
     _draw(paper, lens, SHEET, outline(plane), hiders)
     text, angle = sheet.name, None
     if told.polarizer is not None:
-        text, angle = f"{sheet.name} (polarizer {told.polarizer.angle_deg:g}°)", told.polarizer.angle_deg
+        angle = told.polarizer.angle_deg
+        text = f"polarizer {angle:g}°" if sheet.name == "polarizer" else f"{sheet.name} (polarizer {angle:g}°)"
     elif told.retarder is not None:
         text = f"{sheet.name} ({told.retarder.retardation_nm:g} nm, slow {told.retarder.slow_deg:g}°)"
         angle = told.retarder.slow_deg
@@ -76,6 +79,12 @@ def draw_sheet(paper: Paper, lens: Lens, sheet: StagedSheet, hiders: Sequence[Hi
         way = np.cos(turned) * plane.frame[:, 0] + np.sin(turned) * plane.frame[:, 1]
         half = 0.42 * min(plane.width_mm, plane.height_mm)
         _arrow(paper, lens, VIBRATION, plane.centre - half * way, plane.centre + half * way, double=True)
+    if sheet.medium is not None and (section := indicatrix_section(sheet.medium, plane.normal)) is not None:
+        half = 0.3 * min(plane.width_mm, plane.height_mm)
+        slow, fast = (half * way for way in section.directions)
+        _arrow(paper, lens, PLATE, plane.centre - slow, plane.centre + slow, double=True)
+        _draw(paper, lens, PLATE, np.stack((plane.centre - fast, plane.centre + fast)), ())
+        text = f"{sheet.name} (arrow: slow)"
     middle = _spot(lens, plane.centre)
     spot = _shown(paper, lens, outline(plane))
     if spot is None:
