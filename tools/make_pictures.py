@@ -13,27 +13,31 @@ import sys
 import tempfile
 from pathlib import Path
 
-PICTURES = Path(__file__).resolve().parent.parent / "docs" / "pictures"
+ROOT = Path(__file__).resolve().parent.parent
+PICTURES = ROOT / "docs" / "pictures"
 
 RENDERED = {
     # The pictures of README.md, by the commands that stand there.
-    "rotating-calcite.webp": ("", "sequence.webp"),
+    "rotating-calcite.webp": ("rotating-calcite", "sequence.webp"),
     "tanzanite.webp": (
-        "--set mineral=tanzanite --set analyser_deg=0 --set first_angle_deg=45 --frames 24 --size 320x320",
+        "rotating-calcite --set mineral=tanzanite --set analyser_deg=0 --set first_angle_deg=45"
+        " --frames 24 --size 320x320",
         "sequence.webp",
     ),
+    "ruby.png": ("docs/scenes/ruby.yaml", "frame-0000.png"),
+    "calcite-over-page.png": ("docs/scenes/calcite-over-page.yaml --size 400x400", "frame-0000.png"),
     # That of docs/tour.md: the same bits as the program's.
-    "tour.png": ("--set first_angle_deg=40 --frames 1 --size 320x320", "frame-0000.png"),
+    "tour.png": ("rotating-calcite --set first_angle_deg=40 --frames 1 --size 320x320", "frame-0000.png"),
 }
-"""Options of ``isogyre render rotating-calcite``, and which of its files is the picture."""
+"""What follows ``isogyre render``, in the project's folder, and which of its files is the picture."""
 
 
 def main() -> None:
     """Render and copy every picture."""
     command = Path(sys.executable).with_name("isogyre")
-    for name, (options, file) in RENDERED.items():
+    for name, (arguments, file) in RENDERED.items():
         with tempfile.TemporaryDirectory() as out:
-            subprocess.run([command, "render", "rotating-calcite", *options.split(), "--out", out], check=True)
+            subprocess.run([command, "render", *arguments.split(), "--out", out], check=True, cwd=ROOT)
             shutil.copyfile(Path(out) / file, PICTURES / name)
 
 

@@ -41,6 +41,8 @@ class Surroundings:
         self._basis = basis(wavelength_nm)
         # Linear sRGB of light reflected by each of the three basis spectra, (3 of the basis, 3 channels).
         self._reflected = np.sum(self._basis[:, :, None] * weights, axis=1)
+        self._weights = weights
+        self._absorption = illumination.absorption_per_mm(wavelength_nm)
         self._footprint_mm = footprint_mm
         self._half_width = 0.5 * scene.page.texture.width_mm
         self._half_height = 0.5 * scene.page.texture.height_mm
@@ -60,15 +62,17 @@ class Surroundings:
         result = np.full(colour.size, self.sky)
         down = np.flatnonzero(direction[2] < 0.0)
         if down.size:
-            reflectance, light, sheet = self._page(columns(point, down), columns(direction, down))
+            reflectance, light, sheet, way = self._page(columns(point, down), columns(direction, down))
+            at = colour[down]
+            if way is not None and self._absorption is not None:
+                light = self._illumination.coloured(light, way, self._absorption[:, at])
             if reflectance.shape[0] == 1:
                 value = reflectance[0]
             else:
-                at = colour[down]
                 value = reflectance[0] * self._basis[0][at]
                 value += reflectance[1] * self._basis[1][at]
                 value += reflectance[2] * self._basis[2][at]
-            result[down] = np.where(sheet, value, self._scene.page.table_reflectance) * light
+            result[down] = np.where(sheet, value, self._scene.page.table_reflectance) * light * self._scene.exposure
         return result
 
     def linear_srgb(self, point: Real, direction: Real) -> Real:
@@ -82,20 +86,43 @@ class Surroundings:
         result = np.full((3, point.shape[1]), self.sky)
         down = np.flatnonzero(direction[2] < 0.0)
         if down.size:
-            reflectance, light, sheet = self._page(columns(point, down), columns(direction, down))
+            reflectance, light, sheet, way = self._page(columns(point, down), columns(direction, down))
             for channel in range(3):
                 value = reflectance[0]
                 if reflectance.shape[0] == 3:
                     red, green, blue = self._reflected[:, channel]
                     value = reflectance[0] * red + reflectance[1] * green + reflectance[2] * blue
-                result[channel, down] = np.where(sheet, value, self._scene.page.table_reflectance) * light
+                value = np.where(sheet, value, self._scene.page.table_reflectance)
+                result[channel, down] = value * light * self._scene.exposure
+            behind = np.flatnonzero(way) if way is not None else np.empty(0, np.intp)
+            if behind.size and way is not None and self._absorption is not None:
+                result[:, down[behind]] = self._exposed(
+                    reflectance[:, behind], light[behind], sheet[behind], way[behind], self._absorption
+                )
         return result
 
-    def _page(self, point: Real, direction: Real) -> tuple[Real, Real, NDArray[np.bool_]]:
-        """Return texture reflectance (channels, N), light times exposure, and whether the sheet was met."""
+    def _exposed(self, reflectance: Real, light: Real, sheet: NDArray[np.bool_], way: Real, absorption: Real) -> Real:
+        """Return the colour of places of the page in light that has come through a coloured crystal, shape (3, N)."""
+        result = np.zeros((3, way.size))
+        for place, weights in enumerate(self._weights):
+            value = reflectance[0]
+            if reflectance.shape[0] == 3:
+                value = np.sum(reflectance * self._basis[:, place, None], axis=0)
+            value = np.where(sheet, value, self._scene.page.table_reflectance)
+            value = value * self._illumination.coloured(light, way, absorption[:, place, None])
+            for channel in range(3):
+                result[channel] += weights[channel] * value
+        return result * self._scene.exposure
+
+    def _page(self, point: Real, direction: Real) -> tuple[Real, Real, NDArray[np.bool_], Real | None]:
+        """Return texture reflectance (channels, N), light, whether the sheet was met, the light's way in the crystal.
+
+        The way, mm, is told of coloured crystals only.
+        """
         distance = point[2] / -direction[2]
         x = point[0] + distance * direction[0]
         y = point[1] + distance * direction[1]
         reflectance = self._scene.page.texture.average(x, y, self._footprint_mm)
         sheet = (np.abs(x) <= self._half_width) & (np.abs(y) <= self._half_height)
-        return reflectance, self._illumination.at(x, y) * self._scene.exposure, sheet
+        way = None if self._absorption is None else self._illumination.way_mm(x, y)
+        return reflectance, self._illumination.at(x, y), sheet, way

@@ -46,10 +46,11 @@ def test_pictures_are_shown_and_shown_pictures_are_there() -> None:
 
 
 def test_the_command_of_the_picture_stands_in_the_readme() -> None:
-    options, file = RENDERED["rotating-calcite.webp"]
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert f"isogyre render {' '.join(('rotating-calcite', *options.split(), '--out'))} " in text
-    assert file in text
+    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    for name in ("rotating-calcite.webp", "tanzanite.webp", "ruby.png"):
+        arguments, _ = RENDERED[name]
+        assert f"isogyre render {arguments} --out " in text
+    assert RENDERED["rotating-calcite.webp"][1] in text
 
 
 NUMBER = re.compile(r"-?\d+\.\d+")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+import minerals_db
 from crystal_core.optics import Medium
 from crystal_core.render import QUALITIES, Illumination, Quality, TilePixels, render_pixels, tuned_quality
 from crystal_core.render.sampling import passes
@@ -136,6 +137,28 @@ def test_shadow_and_light_through_the_block() -> None:
     assert under == pytest.approx(0.89, abs=0.02)  # 2n/(n²+1) for n about 1.57, slightly less on a slant
     assert beside == 0.0
     assert clear > 0.99
+
+
+def test_light_through_a_coloured_block_has_its_colour() -> None:
+    """Ruby lets red light through to the page and stops green; what goes through is Beer's law over the way inside."""
+    scene = tabletop("ruby", light_mm=(0.0, 0.0, 4000.0), sky_fraction=0.0)
+    illumination = Illumination(scene)
+    lines = np.array((550.0, 650.0))
+    coefficients = illumination.absorption_per_mm(lines)
+    assert coefficients is not None
+    ruby = minerals_db.mineral("ruby").absorption
+    assert ruby is not None
+    for axis, row in zip("ooe", coefficients, strict=True):
+        np.testing.assert_array_equal(row, ruby.per_mm(axis, lines))
+    place = np.zeros(1)
+    way = illumination.way_mm(place, place)
+    assert way[0] == pytest.approx(12.0, abs=1e-3)
+    clear = illumination.at(place, place)
+    green, red = (float(illumination.coloured(clear, way, coefficients[:, [k]])[0] / clear[0]) for k in (0, 1))
+    assert red == pytest.approx(np.exp(-12.0 * coefficients[:, 1]).mean(), rel=1e-3)
+    assert red > 10.0 * green
+    beside = illumination.way_mm(np.array((30.0,)), place)
+    assert beside[0] == 0.0
 
 
 @pytest.mark.parametrize("side", [2, 4])
